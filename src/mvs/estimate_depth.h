@@ -1,0 +1,66 @@
+#ifndef TAPA_SRC_MVS_ESTIMATE_DEPTH_H_
+#define TAPA_SRC_MVS_ESTIMATE_DEPTH_H_
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "src/mvs/map.h"
+#include "src/mvs/options.h"
+#include "src/mvs/vec3.h"
+#include "src/mvs/view.h"
+
+namespace tapa {
+
+// One reference view and the source views that its pixels are compared with.
+struct Problem {
+  View reference;
+  // At least one. Views may differ in size and camera.
+  std::vector<View> sources;
+  // Range of the first random depths, in scene units: 0 < min <= max.
+  float depth_min = 0;
+  float depth_max = 0;
+  // Where the geometric pass starts, besides reference.depth: unit normals in
+  // the reference camera's frame that face the camera (negative z on the
+  // optical axis). Ignored by the photometric pass.
+  const Map<Vec3>* normal = nullptr;
+};
+
+struct Estimate {
+  // Depth in scene units, 0 where the estimate was filtered.
+  Map<float> depth;
+  // Unit normals in the reference camera's frame, 0 where filtered.
+  Map<Vec3> normal;
+  // Probability that source view m sees a pixel, 0 to 1, at
+  // [pixel * sources + m], in fixed point: value / 65535.
+  std::vector<uint16_t> selection_prob;
+  // With Options::filter: bit m % 8 of byte [pixel * ceil(sources / 8) + m / 8]
+  // says whether source view m supports the estimate.
+  std::vector<uint8_t> consistent;
+};
+
+// How a caller follows and ends a running estimation. Both are called often,
+// from the calling thread or another one, never from two at a time.
+struct Control {
+  // Receives the share of the work that is done, 0 to 1.
+  std::function<void(double)> progress;
+  // Returns true to end the estimation within a fraction of a second.
+  std::function<bool()> stopped;
+};
+
+// Estimates depth and normal of every pixel of the reference view. Returns
+// nothing if control.stopped() said so. Throws std::invalid_argument for
+// options or a problem that make no sense. The result depends neither on the
+// number of threads nor on what was estimated before.
+std::optional<Estimate> EstimateDepth(const Options& options,
+                                      const Problem& problem,
+                                      const Control& control = Control());
+
+// Bytes of memory that EstimateDepth needs at its peak, the reference and
+// source images and maps of the caller not counted.
+size_t EstimateDepthMemory(const Options& options, const Problem& problem);
+
+}  // namespace tapa
+
+#endif  // TAPA_SRC_MVS_ESTIMATE_DEPTH_H_

@@ -1,0 +1,41 @@
+#ifndef TAPA_SRC_MVS_VIEW_H_
+#define TAPA_SRC_MVS_VIEW_H_
+
+#include <array>
+#include <cstdint>
+
+#include "src/mvs/map.h"
+
+namespace tapa {
+
+// Pinhole camera. A world point X is seen at pixel (col, row) with
+//
+//   depth * (col, row, 1)^T = K (R X + t),   K = [fx 0 cx; 0 fy cy; 0 0 1].
+//
+// Integer pixel coordinates are pixel centres, as in COLMAP's dense stereo.
+// Depth is planar: the z coordinate in the camera frame, in scene units.
+struct Camera {
+  double fx = 1.0;
+  double fy = 1.0;
+  double cx = 0.0;
+  double cy = 0.0;
+  // Rotation from world to camera, row-major.
+  std::array<double, 9> R = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  // Translation from world to camera, in scene units.
+  std::array<double, 3> t = {0, 0, 0};
+};
+
+// One photograph. The maps are borrowed: whoever calls the engine keeps them
+// alive for the duration of the call.
+struct View {
+  Camera camera;
+  // Grey image, 0 to 255. Required.
+  const Map<uint8_t>* image = nullptr;
+  // Depth map from the photometric pass, same size as the image, 0 where there
+  // is no estimate. Required of every view in a geometric pass.
+  const Map<float>* depth = nullptr;
+};
+
+}  // namespace tapa
+
+#endif  // TAPA_SRC_MVS_VIEW_H_
