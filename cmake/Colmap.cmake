@@ -1,0 +1,47 @@
+# Builds COLMAP 3.8 with the patches of patches/colmap-3.8 and our engine
+# inside. The program is the target colmap_exe, at bin/colmap.
+
+option(TAPA_WITH_GUI "Build COLMAP's graphical user interface" ON)
+set(COLMAP_SOURCE_DIR "$ENV{COLMAP_SOURCE_DIR}" CACHE PATH
+    "Unpacked source of COLMAP 3.8; empty: Debian's source package")
+
+set(colmap_dir ${CMAKE_BINARY_DIR}/colmap-3.8)
+set(patches_dir ${CMAKE_SOURCE_DIR}/patches/colmap-3.8)
+file(GLOB patches CONFIGURE_DEPENDS ${patches_dir}/*.patch)
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS
+  ${patches_dir}/series ${patches}
+  ${CMAKE_SOURCE_DIR}/scripts/prepare_colmap.sh
+  ${CMAKE_SOURCE_DIR}/scripts/fetch_colmap.sh)
+execute_process(
+  COMMAND ${CMAKE_COMMAND} -E env COLMAP_SOURCE_DIR=${COLMAP_SOURCE_DIR}
+          ${CMAKE_SOURCE_DIR}/scripts/prepare_colmap.sh ${colmap_dir}
+  RESULT_VARIABLE result)
+if(NOT result EQUAL 0)
+  message(FATAL_ERROR "The source of COLMAP could not be prepared (see above).")
+endif()
+
+# COLMAP's own CUDA code does not compile with today's CUDA, and the engine
+# replaces the part that matters here.
+set(CUDA_ENABLED OFF CACHE BOOL "" FORCE)
+set(TESTS_ENABLED OFF CACHE BOOL "" FORCE)
+set(CCACHE_ENABLED OFF CACHE BOOL "" FORCE)  # See Ccache.cmake.
+set(BOOST_STATIC OFF CACHE BOOL "" FORCE)
+set(GUI_ENABLED ${TAPA_WITH_GUI} CACHE BOOL "" FORCE)
+set(CMAKE_WARN_DEPRECATED OFF CACHE BOOL "" FORCE)
+mark_as_advanced(CUDA_ENABLED TESTS_ENABLED CCACHE_ENABLED BOOST_STATIC
+  GUI_ENABLED)
+add_subdirectory(${colmap_dir} ${CMAKE_BINARY_DIR}/colmap EXCLUDE_FROM_ALL)
+
+# COLMAP declares what it compiles with per folder, not per target.
+get_directory_property(colmap_includes
+  DIRECTORY ${colmap_dir} INCLUDE_DIRECTORIES)
+get_directory_property(colmap_definitions
+  DIRECTORY ${colmap_dir} COMPILE_DEFINITIONS)
+
+add_subdirectory(${CMAKE_SOURCE_DIR}/src/colmap ${CMAKE_BINARY_DIR}/src/colmap)
+
+add_custom_target(tapa_colmap_program ALL DEPENDS colmap_exe)
+install(TARGETS colmap_exe RUNTIME DESTINATION bin)
+install(FILES ${colmap_dir}/doc/COLMAP.desktop DESTINATION share/applications)
+install(FILES ${colmap_dir}/COPYING.txt DESTINATION share/doc/tapa-mvs
+  RENAME colmap-copyright.txt)
