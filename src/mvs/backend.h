@@ -1,0 +1,41 @@
+#ifndef TAPA_SRC_MVS_BACKEND_H_
+#define TAPA_SRC_MVS_BACKEND_H_
+
+#include <functional>
+#include <memory>
+
+#include "src/mvs/estimate_depth.h"
+#include "src/mvs/sweep.h"
+
+namespace tapa {
+
+// Who holds the state of an estimation and runs its sweeps. The schedule in
+// estimate_depth.cc calls it in this order: SetEstimate, then sweeps, between
+// which the estimate may be read and replaced, then TakeResult.
+//
+// Functions that take long call more(share done) now and then and return false
+// soon after it did.
+class Backend {
+ public:
+  using More = std::function<bool(double)>;
+
+  virtual ~Backend() = default;
+
+  // Replaces the estimate of every pixel and computes its costs.
+  virtual bool SetEstimate(Map<float> depth, Map<Vec3> normal,
+                           const More& more) = 0;
+
+  // One sweep; params.index % 4 is its direction: down, left, up, right.
+  virtual bool Sweep(const SweepParams& params, const More& more) = 0;
+
+  // Moves the result out; the backend cannot be used any more.
+  virtual Estimate TakeResult() = 0;
+};
+
+// options.num_threads threads of the CPU, with its widest SIMD instructions.
+std::unique_ptr<Backend> MakeCpuBackend(const Options& options,
+                                        const Problem& problem);
+
+}  // namespace tapa
+
+#endif  // TAPA_SRC_MVS_BACKEND_H_

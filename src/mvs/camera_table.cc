@@ -1,0 +1,89 @@
+#include "src/mvs/camera_table.h"
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+#include <algorithm>
+
+namespace tapa {
+namespace {
+
+using Matrix3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+
+Matrix3 Intrinsics(const Camera& camera) {
+  Matrix3 K;
+  K << camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1;
+  return K;
+}
+
+Eigen::Map<const Matrix3> Rotation(const Camera& camera) {
+  return Eigen::Map<const Matrix3>(camera.R.data());
+}
+
+Eigen::Map<const Eigen::Vector3d> Translation(const Camera& camera) {
+  return Eigen::Map<const Eigen::Vector3d>(camera.t.data());
+}
+
+}  // namespace
+
+CameraTable::CameraTable(const Problem& problem) {
+  const Camera& ref = problem.reference.camera;
+  reference_.inv_fx = static_cast<float>(1.0 / ref.fx);
+  reference_.inv_fy = static_cast<float>(1.0 / ref.fy);
+  reference_.offset_x = static_cast<float>(-ref.cx / ref.fx);
+  reference_.offset_y = static_cast<float>(-ref.cy / ref.fy);
+
+  count_ = static_cast<int>(problem.sources.size());
+  padded_count_ = (count_ + SourceCameras::kPadding - 1) /
+                  SourceCameras::kPadding * SourceCameras::kPadding;
+  coefficients_.resize(static_cast<size_t>(kNumCoefficients) * padded_count_);
+
+  const Matrix3 K = Intrinsics(ref);
+  for (int m = 0; m < padded_count_; ++m) {
+    const View& view = problem.sources[m < count_ ? m : 0];
+    const Matrix3 K_m = Intrinsics(view.camera);
+    const Matrix3 R = Rotation(view.camera) * Rotation(ref).transpose();
+    const Eigen::Vector3d t = Translation(view.camera) - R * Translation(ref);
+    const Eigen::Vector3d C = -R.transpose() * t;
+    const Matrix3 A = K_m * R * K.inverse();
+    const Matrix3 B = K * R.transpose() * K_m.inverse();
+    const Eigen::Vector3d b = K_m * t;
+    const Eigen::Vector3d g = K * C;
+
+    float* to = coefficients_.data() + m;
+    const auto put = [&](double value) {
+      *to = static_cast<float>(value);
+      to += padded_count_;
+    };
+    std::for_each(A.data(), A.data() + 9, put);
+    std::for_each(b.data(), b.data() + 3, put);
+    std::for_each(B.data(), B.data() + 9, put);
+    std::for_each(g.data(), g.data() + 3, put);
+    std::for_each(C.data(), C.data() + 3, put);
+    put(m < count_ ? 1 : 0);
+    put(view.image->width());
+    put(view.image->height());
+  }
+}
+
+SourceCameras CameraTable::sources() const {
+  SourceCameras views;
+  views.count = count_;
+  views.padded_count = padded_count_;
+  const float* from = coefficients_.data();
+  const auto take = [&] {
+    const float* row = from;
+    from += padded_count_;
+    return row;
+  };
+  std::generate_n(views.A, 9, take);
+  std::generate_n(views.b, 3, take);
+  std::generate_n(views.B, 9, take);
+  std::generate_n(views.g, 3, take);
+  std::generate_n(views.C, 3, take);
+  views.valid = take();
+  views.width = take();
+  views.height = take();
+  return views;
+}
+
+}  // namespace tapa

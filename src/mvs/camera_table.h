@@ -1,0 +1,33 @@
+#ifndef TAPA_SRC_MVS_CAMERA_TABLE_H_
+#define TAPA_SRC_MVS_CAMERA_TABLE_H_
+
+#include <vector>
+
+#include "src/mvs/estimate_depth.h"
+#include "src/mvs/plane.h"
+#include "src/mvs/source_cameras.h"
+
+namespace tapa {
+
+// Computes and owns the cameras of a problem in the form that sweeps read.
+class CameraTable {
+ public:
+  explicit CameraTable(const Problem& problem);
+
+  const RefCamera& reference() const { return reference_; }
+  // Points into this table, which must outlive it.
+  SourceCameras sources() const;
+
+ private:
+  enum { kNumCoefficients = 9 + 3 + 9 + 3 + 3 + 1 + 2 };
+
+  RefCamera reference_;
+  int count_;
+  int padded_count_;
+  // One row of padded_count_ views for every coefficient.
+  std::vector<float> coefficients_;
+};
+
+}  // namespace tapa
+
+#endif  // TAPA_SRC_MVS_CAMERA_TABLE_H_

@@ -1,0 +1,29 @@
+#include "src/mvs/cpu/problem_data.h"
+
+#include "src/mvs/view_selection.h"
+
+namespace tapa {
+
+ProblemData::ProblemData(const Options& options, const Problem& problem)
+    : width(problem.reference.image->width()),
+      height(problem.reference.image->height()),
+      num_sources(static_cast<int>(problem.sources.size())),
+      window(options),
+      reference(*problem.reference.image, window),
+      cameras(problem) {
+  for (const View& view : problem.sources) {
+    sources.emplace_back(*view.image);
+    if (options.geom_consistency) {
+      source_depths.push_back(view.depth);
+    }
+  }
+}
+
+SweepState::SweepState(const ProblemData& data, bool filter)
+    : depth(data.width, data.height),
+      normal(data.width, data.height),
+      cost(depth.size() * data.num_sources),
+      prob(depth.size() * data.num_sources, EncodeProb(0.5f)),
+      consistent(filter ? depth.size() * ((data.num_sources + 7) / 8) : 0) {}
+
+}  // namespace tapa

@@ -1,0 +1,47 @@
+#ifndef TAPA_SRC_MVS_CPU_PROBLEM_DATA_H_
+#define TAPA_SRC_MVS_CPU_PROBLEM_DATA_H_
+
+#include <vector>
+
+#include "src/mvs/camera_table.h"
+#include "src/mvs/cpu/source_image.h"
+#include "src/mvs/cpu/window.h"
+#include "src/mvs/estimate_depth.h"
+
+namespace tapa {
+
+// What the CPU reads in a sweep and never changes: images and cameras in the
+// layout that sweeps want.
+struct ProblemData {
+  ProblemData(const Options& options, const Problem& problem);
+
+  int width;
+  int height;
+  int num_sources;
+  Window window;
+  RefImage reference;
+  CameraTable cameras;
+  std::vector<SourceImage> sources;
+  // Source depth maps; empty in the photometric pass.
+  std::vector<const Map<float>*> source_depths;
+};
+
+// What sweeps change, for every pixel in row-major order. Values of one pixel
+// for all views lie side by side, so that vertical and horizontal sweeps read
+// whole cache lines alike.
+struct SweepState {
+  SweepState(const ProblemData& data, bool filter);
+
+  Map<float> depth;
+  Map<Vec3> normal;
+  // Photometric cost and selection probability at [pixel * sources + m], in the
+  // fixed point of view_selection.h.
+  std::vector<uint16_t> cost;
+  std::vector<uint16_t> prob;
+  // As in Estimate::consistent.
+  std::vector<uint8_t> consistent;
+};
+
+}  // namespace tapa
+
+#endif  // TAPA_SRC_MVS_CPU_PROBLEM_DATA_H_

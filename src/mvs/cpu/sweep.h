@@ -1,0 +1,59 @@
+#ifndef TAPA_SRC_MVS_CPU_SWEEP_H_
+#define TAPA_SRC_MVS_CPU_SWEEP_H_
+
+#include <vector>
+
+#include "src/mvs/cpu/problem_data.h"
+#include "src/mvs/sweep.h"
+
+namespace tapa {
+
+// Working memory of one thread.
+class SweepScratch {
+ public:
+  explicit SweepScratch(const ProblemData& data);
+
+  Patch patch;
+  PixelScratch pixel;
+  // Backward messages of a whole line, padded_count for each pixel.
+  hwy::AlignedFreeUniquePtr<float[]> backward;
+
+ private:
+  hwy::AlignedFreeUniquePtr<float[]> arrays_;
+  std::vector<int> drawn_;
+  std::vector<Projection> projection_;
+};
+
+// The four directions of an iteration, in this order. Lines are columns in
+// vertical directions, otherwise rows.
+enum class Direction { kDown, kLeft, kUp, kRight };
+
+// Number of lines of a sweep in this direction.
+inline int NumLines(const ProblemData& data, Direction direction) {
+  return direction == Direction::kDown || direction == Direction::kUp
+             ? data.width
+             : data.height;
+}
+
+// Sweeps along lines [begin, end). Different lines may be swept at the same
+// time.
+void SweepLines(const ProblemData& data, const SweepParams& params,
+                Direction direction, int begin, int end, SweepState* state,
+                SweepScratch* scratch);
+
+// Computes the photometric costs of the state's estimates in rows [begin, end).
+void ComputeCosts(const ProblemData& data, int begin, int end,
+                  SweepState* state, SweepScratch* scratch);
+
+// The two steps of a photometric cost, for tests and benchmarks: the patch
+// around a reference pixel, and its correlation with source view m.
+void PreparePatch(const ProblemData& data, int row, int col, Patch* patch);
+float PhotometricCost(const ProblemData& data, const Patch& patch,
+                      const Warp& warp, int m);
+
+// Instruction set that the functions above run with on this machine.
+const char* InstructionSet();
+
+}  // namespace tapa
+
+#endif  // TAPA_SRC_MVS_CPU_SWEEP_H_

@@ -1,0 +1,56 @@
+#include "src/mvs/cpu/window.h"
+
+#include <cmath>
+#include <cstring>
+
+namespace tapa {
+namespace {
+
+// Widest vector of any supported processor, in floats.
+constexpr int kMaxLanes = 16;
+
+}  // namespace
+
+Window::Window(const Options& options)
+    : radius(options.window_radius), step(options.window_step) {
+  row_samples = 2 * radius / step + 1;
+  num_samples = row_samples * row_samples;
+  padded_samples = (num_samples + kMaxLanes - 1) / kMaxLanes * kMaxLanes;
+  dx = MakeAligned<float>(padded_samples);
+  dy = MakeAligned<float>(padded_samples);
+  spatial_weight = MakeAligned<float>(padded_samples);
+  color_weight = MakeAligned<float>(256);
+
+  const double sigma_spatial =
+      options.sigma_spatial > 0 ? options.sigma_spatial : radius;
+  for (int i = 0; i < num_samples; ++i) {
+    const int y = i / row_samples * step - radius;
+    const int x = i % row_samples * step - radius;
+    dx[i] = static_cast<float>(x);
+    dy[i] = static_cast<float>(y);
+    spatial_weight[i] = static_cast<float>(
+        std::exp(-(x * x + y * y) / (2 * sigma_spatial * sigma_spatial)));
+  }
+  for (int difference = 0; difference < 256; ++difference) {
+    const double d = difference / 255.0 / options.sigma_color;
+    color_weight[difference] = static_cast<float>(std::exp(-0.5 * d * d));
+  }
+}
+
+Patch::Patch(const Window& window)
+    : intensity(MakeAligned<uint8_t>(window.padded_samples)),
+      weight(MakeAligned<float>(window.padded_samples)),
+      weighted_intensity(MakeAligned<float>(window.padded_samples)),
+      mean(0),
+      variance(0) {}
+
+RefImage::RefImage(const Map<uint8_t>& image, const Window& window)
+    : border_(window.radius),
+      padded_(image.width() + 2 * border_, image.height() + 2 * border_, 0) {
+  for (int row = 0; row < image.height(); ++row) {
+    std::memcpy(padded_.Row(row + border_) + border_, image.Row(row),
+                image.width());
+  }
+}
+
+}  // namespace tapa

@@ -1,0 +1,64 @@
+#ifndef TAPA_SRC_MVS_CPU_WINDOW_H_
+#define TAPA_SRC_MVS_CPU_WINDOW_H_
+
+#include <cstdint>
+
+#include "src/mvs/cpu/aligned.h"
+#include "src/mvs/map.h"
+#include "src/mvs/options.h"
+
+namespace tapa {
+
+// The samples of the correlation window, row by row, padded to whole SIMD
+// vectors with samples of weight 0.
+struct Window {
+  explicit Window(const Options& options);
+
+  int radius;
+  int step;
+  // Samples in a row, in the window, and in the window with padding.
+  int row_samples;
+  int num_samples;
+  int padded_samples;
+  // Offsets of the samples from the centre, in pixels.
+  hwy::AlignedFreeUniquePtr<float[]> dx;
+  hwy::AlignedFreeUniquePtr<float[]> dy;
+  // Bilateral weight: the factor for a sample's distance from the centre (0 in
+  // the padding) and the one for a difference in intensity of 0 to 255.
+  hwy::AlignedFreeUniquePtr<float[]> spatial_weight;
+  hwy::AlignedFreeUniquePtr<float[]> color_weight;
+};
+
+// The reference patch around one pixel with its bilateral weights, which sum up
+// to 1. Intensities are 0 to 255 here.
+struct Patch {
+  explicit Patch(const Window& window);
+
+  hwy::AlignedFreeUniquePtr<uint8_t[]> intensity;
+  // Weight of each sample, and weight times (intensity - mean).
+  hwy::AlignedFreeUniquePtr<float[]> weight;
+  hwy::AlignedFreeUniquePtr<float[]> weighted_intensity;
+  float mean;
+  float variance;
+};
+
+// Reference image with a black border as wide as the window's radius.
+class RefImage {
+ public:
+  RefImage(const Map<uint8_t>& image, const Window& window);
+
+  // Pointer to the pixel, around which the whole window can be read.
+  const uint8_t* At(int row, int col) const {
+    return padded_.data() + static_cast<size_t>(row + border_) * stride() +
+           col + border_;
+  }
+  int stride() const { return padded_.width(); }
+
+ private:
+  int border_;
+  Map<uint8_t> padded_;
+};
+
+}  // namespace tapa
+
+#endif  // TAPA_SRC_MVS_CPU_WINDOW_H_

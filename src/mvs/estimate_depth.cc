@@ -1,0 +1,184 @@
+#include "src/mvs/estimate_depth.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "src/mvs/backend.h"
+#include "src/mvs/camera_table.h"
+
+namespace tapa {
+namespace {
+
+constexpr int kSweepsPerIteration = 4;
+
+// Number of the random draws before the first sweep.
+constexpr uint32_t kInitialSweep = 0xFFFFFFFFu;
+
+[[noreturn]] void Fail(const std::string& message) {
+  throw std::invalid_argument(message);
+}
+
+void CheckView(const View& view, const std::string& name, bool needs_depth) {
+  if (view.image == nullptr || view.image->empty()) {
+    Fail(name + " has no image");
+  }
+  if (!(view.camera.fx > 0) || !(view.camera.fy > 0)) {
+    Fail(name + " has a focal length that is not positive");
+  }
+  if (needs_depth && view.depth == nullptr) {
+    Fail(name + " has no depth map, which the geometric pass needs");
+  }
+  if (needs_depth && (view.depth->width() != view.image->width() ||
+                      view.depth->height() != view.image->height())) {
+    Fail(name + " has a depth map of another size than its image");
+  }
+}
+
+void CheckProblem(const Options& options, const Problem& problem) {
+  CheckView(problem.reference, "the reference view", options.geom_consistency);
+  if (problem.sources.empty()) {
+    Fail("the reference view has no source views");
+  }
+  for (size_t m = 0; m < problem.sources.size(); ++m) {
+    CheckView(problem.sources[m], "source view " + std::to_string(m),
+              options.geom_consistency);
+  }
+  if (!(problem.depth_min > 0) || !(problem.depth_max >= problem.depth_min) ||
+      !std::isfinite(problem.depth_max)) {
+    Fail("the depth range must be positive and not empty");
+  }
+  if (options.geom_consistency &&
+      (problem.normal == nullptr ||
+       problem.normal->width() != problem.reference.image->width() ||
+       problem.normal->height() != problem.reference.image->height())) {
+    Fail("the geometric pass needs a normal map of the reference image's size");
+  }
+}
+
+// The photometric pass starts from random planes, the geometric one from the
+// given maps, with random planes where these have none.
+void InitializeEstimate(const Options& options, const Problem& problem,
+                        Map<float>* depth, Map<Vec3>* normal) {
+  const RefCamera camera = CameraTable(problem).reference();
+  const Map<uint8_t>& image = *problem.reference.image;
+  if (options.geom_consistency) {
+    *depth = *problem.reference.depth;
+    *normal = *problem.normal;
+  } else {
+    *depth = Map<float>(image.width(), image.height());
+    *normal = Map<Vec3>(image.width(), image.height());
+  }
+  for (int row = 0; row < image.height(); ++row) {
+    for (int col = 0; col < image.width(); ++col) {
+      const Vec3 ray = camera.Ray(row, col);
+      const float d = depth->At(row, col);
+      if (std::isfinite(d) && d > 0 && Dot(normal->At(row, col), ray) < 0) {
+        continue;
+      }
+      const Random random(options.seed,
+                          static_cast<uint64_t>(row) * image.width() + col,
+                          kInitialSweep);
+      depth->At(row, col) =
+          RandomDepth(random, problem.depth_min, problem.depth_max);
+      normal->At(row, col) = RandomNormal(random, ray);
+    }
+  }
+}
+
+float CosineOfDegrees(double degrees) {
+  return static_cast<float>(std::cos(degrees * 3.14159265358979323846 / 180));
+}
+
+// Parameters that all sweeps have in common.
+SweepParams MakeSweepParams(const Options& options, const Problem& problem) {
+  SweepParams params;
+  params.seed = options.seed;
+  params.num_samples = options.num_samples;
+  params.window_radius = static_cast<float>(options.window_radius);
+  params.selection = ViewSelection::FromSigma(options.ncc_sigma);
+  params.prior = ViewPrior::FromAngles(options.min_triangulation_angle,
+                                       options.incident_angle_sigma);
+  params.geometric = options.geom_consistency;
+  params.geom_weight = static_cast<float>(options.geom_consistency_regularizer);
+  params.geom_max_cost = static_cast<float>(options.geom_consistency_max_cost);
+  params.filter_min_prob = params.selection.Emission(
+      static_cast<float>(1.0 - options.filter_min_ncc));
+  params.filter_cos_min_triangulation =
+      CosineOfDegrees(options.filter_min_triangulation_angle);
+  params.filter_geom_max_cost =
+      static_cast<float>(options.filter_geom_consistency_max_cost);
+  params.filter_min_num_consistent =
+      std::min(options.filter_min_num_consistent,
+               static_cast<int>(problem.sources.size()));
+  return params;
+}
+
+// Sets what changes from sweep to sweep: random changes shrink by half in every
+// iteration, and trust in the previous selection grows from 0 to 1.
+void AdvanceSweepParams(const Options& options, int iteration, int sweep,
+                        SweepParams* params) {
+  params->index = iteration * kSweepsPerIteration + sweep;
+  params->perturbation = static_cast<float>(
+      std::pow(2.0, -(iteration + sweep / double{kSweepsPerIteration})));
+  const int num_sweeps = options.num_iterations * kSweepsPerIteration;
+  params->prev_prob_weight = static_cast<float>(params->index) / num_sweeps;
+  params->filter =
+      options.filter && params->index + 1 == static_cast<uint32_t>(num_sweeps);
+}
+
+}  // namespace
+
+std::optional<Estimate> EstimateDepth(const Options& options,
+                                      const Problem& problem,
+                                      const Control& control) {
+  options.Check();
+  CheckProblem(options, problem);
+
+  const std::unique_ptr<Backend> backend = MakeCpuBackend(options, problem);
+
+  // The first costs take about as long as one sweep.
+  const int num_steps = options.num_iterations * kSweepsPerIteration + 1;
+  int step = 0;
+  const Backend::More more = [&](double done) {
+    if (control.progress) {
+      control.progress((step + done) / num_steps);
+    }
+    return !control.stopped || !control.stopped();
+  };
+
+  Map<float> depth;
+  Map<Vec3> normal;
+  InitializeEstimate(options, problem, &depth, &normal);
+  if (!backend->SetEstimate(std::move(depth), std::move(normal), more)) {
+    return std::nullopt;
+  }
+
+  SweepParams params = MakeSweepParams(options, problem);
+  for (int iteration = 0; iteration < options.num_iterations; ++iteration) {
+    for (int sweep = 0; sweep < kSweepsPerIteration; ++sweep) {
+      ++step;
+      AdvanceSweepParams(options, iteration, sweep, &params);
+      if (!backend->Sweep(params, more)) {
+        return std::nullopt;
+      }
+    }
+  }
+  return backend->TakeResult();
+}
+
+size_t EstimateDepthMemory(const Options& options, const Problem& problem) {
+  const size_t num_sources = problem.sources.size();
+  const size_t pixels = problem.reference.image->size();
+  size_t bytes = pixels * (sizeof(float) + sizeof(Vec3) + sizeof(uint8_t) +
+                           2 * sizeof(uint16_t) * num_sources +
+                           (options.filter ? (num_sources + 7) / 8 : 0));
+  for (const View& view : problem.sources) {
+    bytes += view.image->size() * sizeof(uint16_t);
+  }
+  return bytes;
+}
+
+}  // namespace tapa

@@ -1,0 +1,65 @@
+#ifndef TAPA_SRC_MVS_HYPOTHESES_H_
+#define TAPA_SRC_MVS_HYPOTHESES_H_
+
+#include <cmath>
+
+#include "src/mvs/math.h"
+#include "src/mvs/plane.h"
+#include "src/mvs/random.h"
+
+namespace tapa {
+
+// Uniform in [min_depth, max_depth).
+TAPA_INLINE float RandomDepth(const Random& random, float min_depth,
+                              float max_depth) {
+  return min_depth + random.Uniform(kDrawDepth) * (max_depth - min_depth);
+}
+
+// Uniform on the hemisphere of normals that face the camera.
+inline Vec3 RandomNormal(const Random& random, const Vec3& ray) {
+  const float z = 2.0f * random.Uniform(kDrawNormal) - 1.0f;
+  const float angle =
+      2.0f * 3.14159265358979f * random.Uniform(kDrawNormal + 1);
+  const float radius = std::sqrt(1.0f - z * z);
+  const Vec3 normal = {radius * std::cos(angle), radius * std::sin(angle), z};
+  return Dot(normal, ray) > 0.0f ? -normal : normal;
+}
+
+// Depth changed by at most the share `perturbation` of it.
+TAPA_INLINE float PerturbDepth(const Random& random, float perturbation,
+                               float depth) {
+  return RandomDepth(random, (1.0f - perturbation) * depth,
+                     (1.0f + perturbation) * depth);
+}
+
+// Normal rotated about the three axes by at most perturbation / 2 radians each
+// (perturbation at most 1). Where the result would face away from the camera,
+// tries again with half the angles, in the end keeps the normal.
+TAPA_INLINE Vec3 PerturbNormal(const Random& random, float perturbation,
+                               const Vec3& normal, const Vec3& ray) {
+  constexpr int kMaxNormalTrials = 4;
+  for (int trial = 0; trial < kMaxNormalTrials; ++trial) {
+    float s[3];
+    float c[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      const float angle =
+          (random.Uniform(kDrawNormal + 3 * trial + axis) - 0.5f) *
+          perturbation;
+      SinCosSmall(angle, &s[axis], &c[axis]);
+    }
+    // Rx Ry Rz n, one rotation after the other.
+    const Vec3 z = {c[2] * normal.x - s[2] * normal.y,
+                    s[2] * normal.x + c[2] * normal.y, normal.z};
+    const Vec3 y = {c[1] * z.x + s[1] * z.z, z.y, c[1] * z.z - s[1] * z.x};
+    const Vec3 x = {y.x, c[0] * y.y - s[0] * y.z, s[0] * y.y + c[0] * y.z};
+    if (Dot(x, ray) < 0.0f) {
+      return (1.0f / sqrtf(Dot(x, x))) * x;
+    }
+    perturbation *= 0.5f;
+  }
+  return normal;
+}
+
+}  // namespace tapa
+
+#endif  // TAPA_SRC_MVS_HYPOTHESES_H_

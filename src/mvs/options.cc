@@ -1,0 +1,62 @@
+#include "src/mvs/options.h"
+
+#include <sstream>
+#include <stdexcept>
+
+namespace tapa {
+namespace {
+
+template <typename T>
+void CheckRange(const char* name, T value, bool valid, const char* range) {
+  if (!valid) {
+    std::ostringstream message;
+    message << name << " is " << value << ", but must be " << range;
+    throw std::invalid_argument(message.str());
+  }
+}
+
+}  // namespace
+
+#define TAPA_CHECK_OPTION(name, condition, range) \
+  CheckRange(#name, name, condition, range)
+
+void Options::Check() const {
+  TAPA_CHECK_OPTION(window_radius, window_radius >= 1 && window_radius <= 32,
+                    "from 1 to 32");
+  TAPA_CHECK_OPTION(window_step, window_step == 1 || window_step == 2,
+                    "1 or 2");
+  TAPA_CHECK_OPTION(sigma_color, sigma_color > 0, "positive");
+  TAPA_CHECK_OPTION(num_samples, num_samples >= 1 && num_samples <= 10000,
+                    "from 1 to 10000");
+  TAPA_CHECK_OPTION(ncc_sigma, ncc_sigma > 0, "positive");
+  TAPA_CHECK_OPTION(
+      min_triangulation_angle,
+      min_triangulation_angle >= 0 && min_triangulation_angle < 180,
+      "from 0 to below 180 degrees");
+  TAPA_CHECK_OPTION(incident_angle_sigma, incident_angle_sigma > 0, "positive");
+  TAPA_CHECK_OPTION(num_iterations,
+                    num_iterations >= 1 && num_iterations <= 1000,
+                    "from 1 to 1000");
+  TAPA_CHECK_OPTION(geom_consistency_regularizer,
+                    geom_consistency_regularizer >= 0, "at least 0");
+  TAPA_CHECK_OPTION(geom_consistency_max_cost, geom_consistency_max_cost >= 0,
+                    "at least 0");
+  TAPA_CHECK_OPTION(filter_min_ncc, filter_min_ncc >= -1 && filter_min_ncc <= 1,
+                    "from -1 to 1");
+  TAPA_CHECK_OPTION(filter_min_triangulation_angle,
+                    filter_min_triangulation_angle >= 0 &&
+                        filter_min_triangulation_angle <= 180,
+                    "from 0 to 180 degrees");
+  TAPA_CHECK_OPTION(filter_geom_consistency_max_cost,
+                    filter_geom_consistency_max_cost >= 0, "at least 0");
+  TAPA_CHECK_OPTION(filter_min_num_consistent, filter_min_num_consistent >= 0,
+                    "at least 0");
+  TAPA_CHECK_OPTION(
+      num_threads,
+      num_threads == -1 || (num_threads >= 1 && num_threads <= 1024),
+      "-1 (one per core) or from 1 to 1024");
+}
+
+#undef TAPA_CHECK_OPTION
+
+}  // namespace tapa

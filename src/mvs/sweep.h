@@ -1,0 +1,341 @@
+#ifndef TAPA_SRC_MVS_SWEEP_H_
+#define TAPA_SRC_MVS_SWEEP_H_
+
+#include "src/mvs/geometric_cost.h"
+#include "src/mvs/hypotheses.h"
+#include "src/mvs/plane.h"
+#include "src/mvs/source_cameras.h"
+#include "src/mvs/view_prior.h"
+#include "src/mvs/view_selection.h"
+
+// What a sweep does with one pixel. Written once for all backends: a backend
+// brings `Lanes`, which says how the loops over source views are shared out,
+// and `Sources`, which correlates patches and reads depth maps.
+
+#if defined(__CUDACC__)
+#define TAPA_INDEPENDENT_ITERATIONS
+#else
+#define TAPA_INDEPENDENT_ITERATIONS _Pragma("GCC ivdep")
+#endif
+
+namespace tapa {
+
+// All loops over views run in one thread.
+struct SerialLanes {
+  static constexpr int First() { return 0; }
+  static constexpr int Step() { return 1; }
+  static TAPA_INLINE float Sum(float value) { return value; }
+};
+
+// Parameters of one sweep.
+struct SweepParams {
+  // Number of the sweep since the estimation began; keys the random numbers.
+  uint32_t index = 0;
+  uint64_t seed = 0;
+  // Relative size of the random changes, 1 in the first sweep.
+  float perturbation = 1;
+  // Weight of the selection probability of the sweep before, 0 to 1.
+  float prev_prob_weight = 0;
+  int num_samples = 15;
+  // Half size of the correlation window, in pixels.
+  float window_radius = 5;
+  ViewSelection selection;
+  ViewPrior prior;
+
+  // The geometric pass.
+  bool geometric = false;
+  float geom_weight = 0.3f;
+  float geom_max_cost = 3;
+
+  // The last sweep, with the filter on.
+  bool filter = false;
+  float filter_min_prob = 0;
+  float filter_cos_min_triangulation = 1;
+  float filter_geom_max_cost = 1;
+  int filter_min_num_consistent = 2;
+};
+
+// Hypotheses of a pixel (DESIGN section 4). The smallest cost wins; of equal
+// ones the later.
+enum Hypothesis {
+  kCurrent,
+  kPropagated,
+  kRandom,
+  kRandomNormal,
+  kRandomDepth,
+  kNumHypotheses
+};
+
+// Working memory for one pixel: arrays over the views, padded as in
+// SourceCameras.
+struct PixelScratch {
+  // In and out: photometric cost of the pixel's estimate in every view.
+  float* cost;
+  // In: selection probability from the sweep before. Out: the new one.
+  float* prob;
+  // In: forward message of the pixel before. Out: this pixel's.
+  float* forward;
+  // In: backward message.
+  const float* backward;
+
+  // Cumulative distribution of the sampled views, then how often each one was
+  // drawn.
+  float* cdf;
+  float* num_drawn;
+  // Views drawn at least once, most often drawn first.
+  int* drawn;
+  int num_distinct;
+
+  // Photometric costs of the hypotheses where computed, otherwise negative.
+  float* hypothesis_cost[kNumHypotheses];
+  // Geometric costs of the current, the propagated and the random depth.
+  float* geom_cost[3];
+  Projection* projection;
+  float* source_depth;
+};
+
+// Which of the three depths a hypothesis has.
+TAPA_INLINE int DepthIndex(int hypothesis) {
+  return hypothesis == kPropagated                             ? 1
+         : hypothesis == kRandom || hypothesis == kRandomDepth ? 2
+                                                               : 0;
+}
+
+// Probability of drawing each view: visible, with a good angle to measure the
+// surface, and at a similar resolution. Leaves the cumulative distribution.
+template <class Lanes>
+TAPA_INLINE void ComputeSamplingDistribution(const SweepParams& params,
+                                             const RefCamera& camera,
+                                             const SourceCameras& views,
+                                             float row, float col,
+                                             const Plane& plane,
+                                             const Vec3& ray, PixelScratch* s) {
+  const Vec3 point = plane.depth * ray;
+  const Vec3 h = HomographyVector(camera, plane, ray);
+  TAPA_INDEPENDENT_ITERATIONS
+  for (int m = Lanes::First(); m < views.padded_count; m += Lanes::Step()) {
+    const float forward = ViewSelection::Forward(
+        params.selection.Emission(s->cost[m]), s->forward[m]);
+    const float visible = ViewSelection::Probability(
+        forward, s->backward[m], s->prob[m], params.prev_prob_weight);
+    const ViewingAngles angles =
+        ComputeViewingAngles(views, m, point, plane.normal);
+    s->cdf[m] = views.valid[m] * visible *
+                params.prior.Triangulation(angles.cos_triangulation) *
+                params.prior.Incident(angles.cos_incident) *
+                ViewPrior::Resolution(ComputeWarp(views, m, row, col, h),
+                                      params.window_radius);
+  }
+  float sum = 0.0f;
+  for (int m = 0; m < views.count; ++m) {
+    sum += s->cdf[m];
+    s->cdf[m] = sum;
+  }
+  // Where no view has a chance, all have the same.
+  const bool usable = sum > 0.0f;
+  const float scale = usable ? 1.0f / sum : 1.0f / views.count;
+  for (int m = 0; m < views.count; ++m) {
+    s->cdf[m] = (usable ? s->cdf[m] : m + 1.0f) * scale;
+  }
+}
+
+// Draws views with replacement. The same draws serve all hypotheses; a view
+// drawn k times is measured once and counts k times.
+template <class Lanes>
+TAPA_INLINE void DrawViews(const SweepParams& params, const Random& random,
+                           const SourceCameras& views, PixelScratch* s) {
+  for (int m = Lanes::First(); m < views.padded_count; m += Lanes::Step()) {
+    s->num_drawn[m] = 0.0f;
+  }
+  for (int i = 0; i < params.num_samples; ++i) {
+    const float u = random.Uniform(kDrawSample + i);
+    TAPA_INDEPENDENT_ITERATIONS
+    for (int m = Lanes::First(); m < views.padded_count; m += Lanes::Step()) {
+      s->num_drawn[m] += u < s->cdf[m] ? 1.0f : 0.0f;
+    }
+  }
+  // So far num_drawn counts the draws below each step of the distribution.
+  s->num_distinct = 0;
+  float before = 0.0f;
+  for (int m = 0; m < views.count; ++m) {
+    const float below = s->num_drawn[m];
+    const float drawn = below - before;
+    before = below;
+    s->num_drawn[m] = drawn;
+    if (drawn > 0.0f) {
+      int i = s->num_distinct++;
+      for (; i > 0 && s->num_drawn[s->drawn[i - 1]] < drawn; --i) {
+        s->drawn[i] = s->drawn[i - 1];
+      }
+      s->drawn[i] = m;
+    }
+  }
+}
+
+template <class Lanes, class Sources>
+TAPA_INLINE void ComputeGeometricCosts(const SweepParams& params,
+                                       const SourceCameras& views,
+                                       const Sources& sources, float row,
+                                       float col, float depth, PixelScratch* s,
+                                       float* costs) {
+  TAPA_INDEPENDENT_ITERATIONS
+  for (int m = Lanes::First(); m < views.padded_count; m += Lanes::Step()) {
+    s->projection[m] = ProjectToSource(views, m, row, col, depth);
+  }
+  for (int m = Lanes::First(); m < views.count; m += Lanes::Step()) {
+    s->source_depth[m] = sources.Depth(m, s->projection[m]);
+  }
+  TAPA_INDEPENDENT_ITERATIONS
+  for (int m = Lanes::First(); m < views.padded_count; m += Lanes::Step()) {
+    costs[m] = ReprojectionError(views, m, row, col, s->projection[m],
+                                 s->source_depth[m], params.geom_max_cost);
+  }
+}
+
+// Summed cost of hypothesis i over the drawn views. Costs are not negative, so
+// the sum only grows: once it exceeds `limit` the hypothesis cannot win any
+// more, and the rest of its views need not be measured.
+template <class Sources>
+TAPA_INLINE float SumCost(const SweepParams& params, const RefCamera& camera,
+                          const SourceCameras& views, Sources& sources,
+                          float row, float col, const Plane& plane,
+                          const Vec3& ray, int i, float limit,
+                          PixelScratch* s) {
+  float sum = 0.0f;
+  if (params.geometric) {
+    const float* geom = s->geom_cost[DepthIndex(i)];
+    for (int k = 0; k < s->num_distinct; ++k) {
+      const int m = s->drawn[k];
+      sum += s->num_drawn[m] * params.geom_weight * geom[m];
+    }
+  }
+  const Vec3 h = HomographyVector(camera, plane, ray);
+  for (int k = 0; k < s->num_distinct && sum <= limit; ++k) {
+    const int m = s->drawn[k];
+    const float cost = DecodeCost(
+        EncodeCost(sources.Cost(m, ComputeWarp(views, m, row, col, h))));
+    s->hypothesis_cost[i][m] = cost;
+    sum += s->num_drawn[m] * cost;
+  }
+  return sum;
+}
+
+// Counts the views that support the estimate and reports each one.
+template <class Lanes, class Sources>
+TAPA_INLINE int FindConsistentViews(const SweepParams& params,
+                                    const SourceCameras& views,
+                                    const Plane& plane, const Vec3& ray,
+                                    const float* geom_cost, PixelScratch* s,
+                                    Sources* sources) {
+  const Vec3 point = plane.depth * ray;
+  int num_consistent = 0;
+  for (int m = Lanes::First(); m < views.count; m += Lanes::Step()) {
+    const ViewingAngles angles =
+        ComputeViewingAngles(views, m, point, plane.normal);
+    const bool consistent =
+        angles.cos_triangulation <= params.filter_cos_min_triangulation &&
+        angles.cos_incident > 0.0f && s->prob[m] >= params.filter_min_prob &&
+        (!params.geometric || geom_cost[m] <= params.filter_geom_max_cost);
+    if (consistent) {
+      sources->SetConsistent(m);
+      ++num_consistent;
+    }
+  }
+  return num_consistent;
+}
+
+// Chooses among the hypotheses of the pixel and updates its costs, messages and
+// selection probabilities. `previous` is the estimate of the pixel before on
+// the sweep's line, with its ray. Returns the new estimate before filtering;
+// *keep says whether it passed the filter.
+template <class Lanes, class Sources>
+TAPA_INLINE Plane SweepPixel(const SweepParams& params, const RefCamera& camera,
+                             const SourceCameras& views, Sources& sources,
+                             int row, int col, uint64_t pixel,
+                             const Plane& current, const Plane& previous,
+                             const Vec3& previous_ray, PixelScratch* s,
+                             bool* keep) {
+  const Random random(params.seed, pixel, params.index);
+  const Vec3 ray = camera.Ray(row, col);
+  ComputeSamplingDistribution<Lanes>(params, camera, views, row, col, current,
+                                     ray, s);
+  DrawViews<Lanes>(params, random, views, s);
+
+  const float random_depth =
+      PerturbDepth(random, params.perturbation, current.depth);
+  const Vec3 random_normal =
+      PerturbNormal(random, params.perturbation, current.normal, ray);
+  const Plane planes[kNumHypotheses] = {
+      current,
+      {PropagateDepth(previous, previous_ray, ray), previous.normal},
+      {random_depth, random_normal},
+      {current.depth, random_normal},
+      {random_depth, current.normal}};
+
+  if (params.geometric) {
+    const float depths[3] = {current.depth, planes[kPropagated].depth,
+                             random_depth};
+    for (int i = 0; i < 3; ++i) {
+      ComputeGeometricCosts<Lanes>(params, views, sources, row, col, depths[i],
+                                   s, s->geom_cost[i]);
+    }
+  }
+
+  int best = kCurrent;
+  float best_cost = 0.0f;
+  for (int k = 0; k < s->num_distinct; ++k) {
+    const int m = s->drawn[k];
+    best_cost += s->num_drawn[m] * s->cost[m];
+    if (params.geometric) {
+      best_cost += s->num_drawn[m] * params.geom_weight * s->geom_cost[0][m];
+    }
+  }
+  for (int i = kCurrent + 1; i < kNumHypotheses; ++i) {
+    // Behind the camera, or a plane that the camera does not see from the
+    // front.
+    if (!(planes[i].depth > 0.0f) || !(Dot(planes[i].normal, ray) < 0.0f)) {
+      continue;
+    }
+    for (int m = Lanes::First(); m < views.count; m += Lanes::Step()) {
+      s->hypothesis_cost[i][m] = -1.0f;
+    }
+    const float cost = SumCost(params, camera, views, sources, row, col,
+                               planes[i], ray, i, best_cost, s);
+    if (cost <= best_cost) {
+      best = i;
+      best_cost = cost;
+    }
+  }
+
+  const Plane chosen = planes[best];
+  if (best != kCurrent) {
+    const Vec3 h = HomographyVector(camera, chosen, ray);
+    for (int m = 0; m < views.count; ++m) {
+      const float known = s->hypothesis_cost[best][m];
+      s->cost[m] = known >= 0.0f ? known
+                                 : DecodeCost(EncodeCost(sources.Cost(
+                                       m, ComputeWarp(views, m, row, col, h))));
+    }
+  }
+
+  TAPA_INDEPENDENT_ITERATIONS
+  for (int m = Lanes::First(); m < views.padded_count; m += Lanes::Step()) {
+    const float forward = ViewSelection::Forward(
+        params.selection.Emission(s->cost[m]), s->forward[m]);
+    s->prob[m] = ViewSelection::Probability(forward, s->backward[m], s->prob[m],
+                                            params.prev_prob_weight);
+    s->forward[m] = forward;
+  }
+
+  *keep = true;
+  if (params.filter) {
+    *keep = FindConsistentViews<Lanes>(
+                params, views, chosen, ray, s->geom_cost[DepthIndex(best)], s,
+                &sources) >= params.filter_min_num_consistent;
+  }
+  return chosen;
+}
+
+}  // namespace tapa
+
+#endif  // TAPA_SRC_MVS_SWEEP_H_
