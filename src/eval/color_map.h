@@ -1,0 +1,58 @@
+#ifndef TAPA_SRC_EVAL_COLOR_MAP_H_
+#define TAPA_SRC_EVAL_COLOR_MAP_H_
+
+#include <opencv2/core.hpp>
+
+#include "src/mvs/map.h"
+#include "src/mvs/vec3.h"
+
+namespace tapa {
+
+// Maps as pictures. All have the size of their map, 8 bits, and OpenCV's order
+// of colours (blue, green, red).
+
+inline const cv::Vec3b kNoEstimateColor(0, 0, 0);
+inline const cv::Vec3b kNoMeasurementColor(150, 150, 150);
+
+// Depths between which colours change, in scene units: 0 < near <= far.
+struct DepthRange {
+  float near = 1;
+  float far = 1;
+};
+
+// The 2nd to the 98th percentile of the depths above 0; 1 to 1 if there is
+// none.
+DepthRange RobustDepthRange(const Map<float>& depth);
+
+// Inverse depth on the TURBO scale, red near and blue far, which keeps apart
+// what stereo can tell apart. Depths beyond the range have its end's colour,
+// pixels without depth the colour `missing`.
+cv::Mat ColorDepth(const Map<float>& depth, const DepthRange& range,
+                   const cv::Vec3b& missing = kNoEstimateColor);
+
+// The colour of a single depth above 0.
+cv::Vec3b DepthColor(float depth, const DepthRange& range);
+
+// A normal's x, y, z, towards the right, the top and the camera, as red, green
+// and blue: light blue is a surface that faces the camera.
+cv::Mat ColorNormals(const Map<Vec3>& normal);
+
+// The colour of a single normal in the camera frame (x right, y down, z away).
+cv::Vec3b NormalColor(const Vec3& normal);
+
+// The relative errors at the ends of the error colours.
+constexpr float kLeastError = 0.001f;
+constexpr float kMostError = 0.1f;
+
+// Error relative to the true depth at the pixels of the ground truth, on a
+// logarithmic scale from green (0.1 % and less) over yellow (1 %) to red (10 %
+// and more); grey where nothing was measured. Sizes may differ as in
+// DepthMapScorer.
+cv::Mat ColorError(const Map<float>& depth, const Map<float>& ground_truth);
+
+// The colour of a single relative error.
+cv::Vec3b ErrorColor(float relative_error);
+
+}  // namespace tapa
+
+#endif  // TAPA_SRC_EVAL_COLOR_MAP_H_

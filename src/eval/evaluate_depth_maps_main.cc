@@ -1,0 +1,309 @@
+// Compares the depth maps of a COLMAP workspace with measured depth, and draws
+// pictures of them.
+
+#include <boost/program_options.hpp>
+#include <cmath>
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <opencv2/core.hpp>
+#include <opencv2/core/utils/logger.hpp>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "src/eval/depth_map_io.h"
+#include "src/eval/depth_map_score.h"
+#include "src/eval/image_io.h"
+#include "src/eval/pictures.h"
+#include "src/eval/score_table.h"
+#include "src/eval/tolerance.h"
+#include "src/eval/workspace.h"
+#include "src/mvs/tapa/textureness.h"
+
+namespace tapa {
+namespace {
+
+namespace fs = std::filesystem;
+namespace po = boost::program_options;
+
+struct Arguments {
+  std::string workspace_path;
+  std::string ground_truth_path;
+  std::string input_type = "geometric";
+  std::string tolerances = "0.01,0.02,0.05,0.1,0.2";
+  std::string relative_tolerances = "0.5,1,2";
+  double depth_scale = 4000;
+  std::optional<double> max_textureness;
+  std::string json_path;
+  std::string pictures_path;
+};
+
+po::options_description Describe(Arguments* arguments) {
+  po::options_description options(
+      "Compares the depth maps of a COLMAP workspace with measured depth.\n\n"
+      "Options");
+  options.add_options()("help", "Print this text.");
+  options.add_options()("workspace_path", po::value(&arguments->workspace_path),
+                        "Dense workspace of COLMAP.");
+  options.add_options()(
+      "ground_truth_path", po::value(&arguments->ground_truth_path),
+      "Folder with one depth map per photograph, named like it: a 16-bit PNG, "
+      "0 where nothing was measured, or a COLMAP map (.bin). May be missing "
+      "if only pictures are wanted.");
+  options.add_options()(
+      "input_type",
+      po::value(&arguments->input_type)->default_value(arguments->input_type),
+      "Which maps: geometric or photometric.");
+  options.add_options()(
+      "tolerances",
+      po::value(&arguments->tolerances)->default_value(arguments->tolerances),
+      "Absolute errors that are tolerated, in metres.");
+  options.add_options()(
+      "relative_tolerances",
+      po::value(&arguments->relative_tolerances)
+          ->default_value(arguments->relative_tolerances),
+      "Relative errors that are tolerated, in per cent of the true depth.");
+  options.add_options()(
+      "depth_scale",
+      po::value(&arguments->depth_scale)->default_value(arguments->depth_scale),
+      "Value of one metre in a ground-truth PNG.");
+  options.add_options()(
+      "max_textureness", po::value<double>(),
+      "Score only pixels of lower textureness, which is 0.5 where a photograph "
+      "is flat and tends to 1 where it has much texture.");
+  options.add_options()("json", po::value(&arguments->json_path),
+                        "File for all scores, of each view and overall.");
+  options.add_options()("pictures", po::value(&arguments->pictures_path),
+                        "Folder for one PNG per view.");
+  return options;
+}
+
+void CheckArguments(const Arguments& arguments) {
+  if (arguments.workspace_path.empty()) {
+    throw std::invalid_argument("--workspace_path is required");
+  }
+  if (arguments.input_type != "geometric" &&
+      arguments.input_type != "photometric") {
+    throw std::invalid_argument(
+        "--input_type must be geometric or photometric");
+  }
+  if (!(arguments.depth_scale > 0) || !std::isfinite(arguments.depth_scale)) {
+    throw std::invalid_argument("--depth_scale must be positive");
+  }
+  const double least = TexturenessOptions().min_textureness;
+  if (arguments.max_textureness.has_value() &&
+      !(*arguments.max_textureness > least &&
+        *arguments.max_textureness <= 1)) {
+    throw std::invalid_argument(
+        "--max_textureness must be above 0.5 and at most 1");
+  }
+  if (arguments.ground_truth_path.empty()) {
+    if (arguments.pictures_path.empty()) {
+      throw std::invalid_argument(
+          "--ground_truth_path is required, unless --pictures is given");
+    }
+    if (!arguments.json_path.empty() || arguments.max_textureness.has_value()) {
+      throw std::invalid_argument(
+          "--json and --max_textureness need --ground_truth_path");
+    }
+  }
+  // Pictures are named like the files in these folders.
+  for (const fs::path& source : {fs::path(arguments.workspace_path) / "images",
+                                 fs::path(arguments.ground_truth_path)}) {
+    std::error_code error;
+    if (!arguments.pictures_path.empty() && !source.empty() &&
+        fs::equivalent(arguments.pictures_path, source, error)) {
+      throw std::invalid_argument("--pictures would overwrite the files in " +
+                                  source.string());
+    }
+  }
+}
+
+// Returns nothing if only the help was asked for.
+std::optional<Arguments> ParseArguments(int argc, char** argv) {
+  Arguments arguments;
+  const po::options_description options = Describe(&arguments);
+  // Long names in full and nothing else, as in COLMAP.
+  const int style = po::command_line_style::allow_long |
+                    po::command_line_style::long_allow_adjacent |
+                    po::command_line_style::long_allow_next;
+  po::variables_map variables;
+  po::store(po::command_line_parser(argc, argv)
+                .options(options)
+                .positional(po::positional_options_description())
+                .style(style)
+                .run(),
+            variables);
+  if (variables.count("help") > 0) {
+    std::cout << options;
+    return std::nullopt;
+  }
+  po::notify(variables);
+  if (variables.count("max_textureness") > 0) {
+    arguments.max_textureness = variables["max_textureness"].as<double>();
+  }
+  CheckArguments(arguments);
+  return arguments;
+}
+
+std::vector<Tolerance> AllTolerances(const Arguments& arguments) {
+  std::vector<Tolerance> tolerances =
+      ParseTolerances(arguments.tolerances, Tolerance::Unit::kMetres);
+  for (const Tolerance& tolerance : ParseTolerances(
+           arguments.relative_tolerances, Tolerance::Unit::kPercent)) {
+    tolerances.push_back(tolerance);
+  }
+  return tolerances;
+}
+
+// 1 at the pixels of low textureness. The size is that of the ground truth, so
+// that maps of all sizes are judged at the same places.
+Map<uint8_t> LowTexture(const std::string& image_path, int width, int height,
+                        double max_textureness) {
+  const Map<float> textureness =
+      ComputeTextureness(ReadGrey(image_path, width, height));
+  Map<uint8_t> mask(width, height);
+  for (size_t i = 0; i < mask.size(); ++i) {
+    mask.data()[i] = textureness.data()[i] < max_textureness;
+  }
+  return mask;
+}
+
+DepthMapScore ScoreView(const WorkspaceView& view, const Map<float>& depth,
+                        const Map<float>& truth, const Arguments& arguments,
+                        DepthMapScorer* scorer) {
+  std::optional<Map<uint8_t>> mask;
+  if (arguments.max_textureness.has_value()) {
+    mask = LowTexture(view.image_path, truth.width(), truth.height(),
+                      *arguments.max_textureness);
+  }
+  try {
+    return scorer->Add(depth, truth, mask.has_value() ? &*mask : nullptr);
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(view.name + ": " + error.what());
+  }
+}
+
+void WriteView(const WorkspaceView& view, const Map<float>& depth,
+               const Map<float>* truth, const std::vector<std::string>& notes,
+               const std::string& folder) {
+  ViewPicture picture;
+  picture.title = view.name;
+  picture.photograph = ReadColor(view.image_path);
+  picture.depth = &depth;
+  Map<Vec3> normal;
+  if (fs::exists(view.normal_path)) {
+    normal = ReadNormalMap(view.normal_path);
+    picture.normal = &normal;
+  }
+  picture.ground_truth = truth;
+  picture.notes = notes;
+  const fs::path path = fs::path(folder) / view.name;
+  WritePng(fs::path(path).replace_extension(".png").string(),
+           DrawView(picture));
+}
+
+void WriteJson(const ScoreReport& report, const Arguments& arguments) {
+  nlohmann::json json = ScoresToJson(report);
+  json["workspace_path"] = arguments.workspace_path;
+  json["ground_truth_path"] = arguments.ground_truth_path;
+  json["input_type"] = arguments.input_type;
+  json["max_textureness"] = nullptr;
+  if (arguments.max_textureness.has_value()) {
+    json["max_textureness"] = *arguments.max_textureness;
+  }
+  std::ofstream stream(arguments.json_path);
+  stream << json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace)
+         << "\n";
+  stream.close();
+  if (!stream) {
+    throw std::runtime_error("cannot write " + arguments.json_path);
+  }
+}
+
+void PrintRemarks(const ScoreReport& report, int num_maps,
+                  int num_ground_truth) {
+  const auto number = [](int64_t count, const std::string& what) {
+    return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+  };
+  const int num_scored = static_cast<int>(report.overall.num_maps);
+  if (num_scored < num_maps) {
+    std::cout << number(num_maps - num_scored, "depth map")
+              << " without ground truth: not scored.\n";
+  }
+  if (num_scored < num_ground_truth) {
+    std::cout << number(num_ground_truth - num_scored, "ground truth map")
+              << " without depth map: not scored.\n";
+  }
+  if (report.overall.num_invalid > 0) {
+    std::cout << number(report.overall.num_invalid, "pixel")
+              << " with a negative or not finite depth: counted as without "
+                 "estimate.\n";
+  }
+}
+
+void Run(const Arguments& arguments) {
+  const bool scoring = !arguments.ground_truth_path.empty();
+  const std::vector<WorkspaceView> views =
+      ListWorkspace(arguments.workspace_path, arguments.input_type);
+  const int num_ground_truth =
+      scoring ? CountGroundTruth(arguments.ground_truth_path) : 0;
+  ScoreReport report;
+  report.tolerances = AllTolerances(arguments);
+  DepthMapScorer scorer(report.tolerances);
+
+  for (const WorkspaceView& view : views) {
+    const std::string truth_path =
+        scoring ? FindGroundTruth(arguments.ground_truth_path, view.name) : "";
+    if (truth_path.empty() && arguments.pictures_path.empty()) continue;
+    const Map<float> depth = ReadDepthMap(view.depth_path);
+    Map<float> truth;
+    std::vector<std::string> notes;
+    if (!truth_path.empty()) {
+      truth = ReadGroundTruth(truth_path, arguments.depth_scale);
+      const DepthMapScore score =
+          ScoreView(view, depth, truth, arguments, &scorer);
+      notes = {
+          "coverage " + PercentText(score.Coverage(), 1) + " %",
+          "median error " + PercentText(score.median_relative_error, 2) + " %"};
+      report.names.push_back(view.name);
+      report.scores.push_back(score);
+    }
+    if (!arguments.pictures_path.empty()) {
+      WriteView(view, depth, truth.empty() ? nullptr : &truth, notes,
+                arguments.pictures_path);
+    }
+  }
+
+  if (!scoring) return;
+  if (report.names.empty()) {
+    throw std::runtime_error("no ground truth in " +
+                             arguments.ground_truth_path +
+                             " has the name of a depth map");
+  }
+  report.overall = scorer.Overall();
+  PrintScores(report, std::cout);
+  PrintRemarks(report, static_cast<int>(views.size()), num_ground_truth);
+  if (!arguments.json_path.empty()) WriteJson(report, arguments);
+}
+
+}  // namespace
+}  // namespace tapa
+
+int main(int argc, char** argv) {
+  try {
+    // What OpenCV has to say about bad files is said below, in one line.
+    cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+    const auto arguments = tapa::ParseArguments(argc, argv);
+    if (arguments.has_value()) tapa::Run(*arguments);
+  } catch (const std::exception& error) {
+    std::cerr << "ERROR: " << error.what() << std::endl;
+    return EXIT_FAILURE;
+  }
+  return EXIT_SUCCESS;
+}
