@@ -21,6 +21,11 @@ constexpr uint32_t kInitialSweep = 0xFFFFFFFFu;
   throw std::invalid_argument(message);
 }
 
+template <typename T>
+bool HasSize(const Map<T>& map, const Map<uint8_t>& image) {
+  return map.width() == image.width() && map.height() == image.height();
+}
+
 void CheckView(const View& view, const std::string& name, bool needs_depth) {
   if (view.image == nullptr || view.image->empty()) {
     Fail(name + " has no image");
@@ -31,14 +36,13 @@ void CheckView(const View& view, const std::string& name, bool needs_depth) {
   if (needs_depth && view.depth == nullptr) {
     Fail(name + " has no depth map, which the geometric pass needs");
   }
-  if (needs_depth && (view.depth->width() != view.image->width() ||
-                      view.depth->height() != view.image->height())) {
+  if (needs_depth && !HasSize(*view.depth, *view.image)) {
     Fail(name + " has a depth map of another size than its image");
   }
 }
 
 void CheckProblem(const Options& options, const Problem& problem) {
-  CheckView(problem.reference, "the reference view", options.geom_consistency);
+  CheckView(problem.reference, "the reference view", false);
   if (problem.sources.empty()) {
     Fail("the reference view has no source views");
   }
@@ -50,40 +54,37 @@ void CheckProblem(const Options& options, const Problem& problem) {
       !std::isfinite(problem.depth_max)) {
     Fail("the depth range must be positive and not empty");
   }
+  const Map<uint8_t>& image = *problem.reference.image;
   if (options.geom_consistency &&
-      (problem.normal == nullptr ||
-       problem.normal->width() != problem.reference.image->width() ||
-       problem.normal->height() != problem.reference.image->height())) {
-    Fail("the geometric pass needs a normal map of the reference image's size");
+      !(HasSize(problem.depth, image) && HasSize(problem.normal, image))) {
+    Fail(
+        "the geometric pass needs a depth and a normal map of the reference "
+        "image's size");
   }
 }
 
 // The photometric pass starts from random planes, the geometric one from the
 // given maps, with random planes where these have none.
-void InitializeEstimate(const Options& options, const Problem& problem,
-                        Map<float>* depth, Map<Vec3>* normal) {
-  const RefCamera camera = CameraTable(problem).reference();
-  const Map<uint8_t>& image = *problem.reference.image;
-  if (options.geom_consistency) {
-    *depth = *problem.reference.depth;
-    *normal = *problem.normal;
-  } else {
-    *depth = Map<float>(image.width(), image.height());
-    *normal = Map<Vec3>(image.width(), image.height());
+void InitializeEstimate(const Options& options, Problem* problem) {
+  const RefCamera camera = CameraTable(*problem).reference();
+  const Map<uint8_t>& image = *problem->reference.image;
+  if (!options.geom_consistency) {
+    problem->depth = Map<float>(image.width(), image.height());
+    problem->normal = Map<Vec3>(image.width(), image.height());
   }
   for (int row = 0; row < image.height(); ++row) {
     for (int col = 0; col < image.width(); ++col) {
       const Vec3 ray = camera.Ray(row, col);
-      const float d = depth->At(row, col);
-      if (std::isfinite(d) && d > 0 && Dot(normal->At(row, col), ray) < 0) {
+      float& depth = problem->depth.At(row, col);
+      Vec3& normal = problem->normal.At(row, col);
+      if (depth > 0 && std::isfinite(depth) && Dot(normal, ray) < 0) {
         continue;
       }
       const Random random(options.seed,
                           static_cast<uint64_t>(row) * image.width() + col,
                           kInitialSweep);
-      depth->At(row, col) =
-          RandomDepth(random, problem.depth_min, problem.depth_max);
-      normal->At(row, col) = RandomNormal(random, ray);
+      depth = RandomDepth(random, problem->depth_min, problem->depth_max);
+      normal = RandomNormal(random, ray);
     }
   }
 }
@@ -131,8 +132,7 @@ void AdvanceSweepParams(const Options& options, int iteration, int sweep,
 
 }  // namespace
 
-std::optional<Estimate> EstimateDepth(const Options& options,
-                                      const Problem& problem,
+std::optional<Estimate> EstimateDepth(const Options& options, Problem problem,
                                       const Control& control) {
   options.Check();
   CheckProblem(options, problem);
@@ -149,10 +149,9 @@ std::optional<Estimate> EstimateDepth(const Options& options,
     return !control.stopped || !control.stopped();
   };
 
-  Map<float> depth;
-  Map<Vec3> normal;
-  InitializeEstimate(options, problem, &depth, &normal);
-  if (!backend->SetEstimate(std::move(depth), std::move(normal), more)) {
+  InitializeEstimate(options, &problem);
+  if (!backend->SetEstimate(std::move(problem.depth), std::move(problem.normal),
+                            more)) {
     return std::nullopt;
   }
 

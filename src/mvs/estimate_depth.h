@@ -21,10 +21,12 @@ struct Problem {
   // Range of the first random depths, in scene units: 0 < min <= max.
   float depth_min = 0;
   float depth_max = 0;
-  // Where the geometric pass starts, besides reference.depth: unit normals in
-  // the reference camera's frame that face the camera (negative z on the
-  // optical axis). Ignored by the photometric pass.
-  const Map<Vec3>* normal = nullptr;
+  // Where the geometric pass starts: depth in scene units and unit normals in
+  // the reference camera's frame, both of the reference image's size. Pixels
+  // whose depth is not positive or whose normal faces away from the camera
+  // start at random. Not used by the photometric pass.
+  Map<float> depth;
+  Map<Vec3> normal;
 };
 
 struct Estimate {
@@ -52,13 +54,19 @@ struct Control {
 // Estimates depth and normal of every pixel of the reference view. Returns
 // nothing if control.stopped() said so. Throws std::invalid_argument for
 // options or a problem that make no sense. The result depends neither on the
-// number of threads nor on what was estimated before.
-std::optional<Estimate> EstimateDepth(const Options& options,
-                                      const Problem& problem,
+// number of threads nor on what was estimated before. Takes the problem by
+// value: move it in where its maps are large.
+std::optional<Estimate> EstimateDepth(const Options& options, Problem problem,
                                       const Control& control = Control());
 
-// Bytes of memory that EstimateDepth needs at its peak, the reference and
-// source images and maps of the caller not counted.
+// Bytes of memory that EstimateDepth needs besides the images and depth maps of
+// the views. For n source views of w x h pixels:
+//
+//   w h (16 + 1 + 4 n) for the estimate, the image, the costs and probabilities
+//   w h ceil(n / 8)    for Estimate::consistent, with Options::filter
+//   2 w h n            for the source images
+//
+// The views themselves need w h (1 + n) and, in the geometric pass, 4 w h n.
 size_t EstimateDepthMemory(const Options& options, const Problem& problem);
 
 }  // namespace tapa

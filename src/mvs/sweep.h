@@ -73,9 +73,9 @@ struct PixelScratch {
   float* cost;
   // In: selection probability from the sweep before. Out: the new one.
   float* prob;
-  // In: forward message of the pixel before. Out: this pixel's.
+  // In: forward message (odds) of the pixel before. Out: this pixel's.
   float* forward;
-  // In: backward message.
+  // In: backward message (odds).
   const float* backward;
 
   // Cumulative distribution of the sampled views, then how often each one was

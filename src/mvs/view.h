@@ -32,7 +32,7 @@ struct View {
   // Grey image, 0 to 255. Required.
   const Map<uint8_t>* image = nullptr;
   // Depth map from the photometric pass, same size as the image, 0 where there
-  // is no estimate. Required of every view in a geometric pass.
+  // is no estimate. Required of the source views in a geometric pass.
   const Map<float>* depth = nullptr;
 };
 

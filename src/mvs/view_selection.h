@@ -16,8 +16,8 @@ struct ViewSelection {
   // Probability that visibility changes from one pixel to the next.
   static constexpr float kChange = 1e-5f;
   static constexpr float kNoChange = 1.0f - kChange;
-  // Message before the first and after the last pixel of a line.
-  static constexpr float kBorderMessage = 0.5f;
+  // Message before the first and after the last pixel of a line: even odds.
+  static constexpr float kBorderMessage = 1.0f;
 
   // Factors of the likelihood norm * exp(scale * cost^2).
   float scale = 0;
@@ -38,33 +38,30 @@ struct ViewSelection {
     return norm * ExpNegative(scale * cost * cost);
   }
 
+  // Messages and their product are kept as odds p / (1 - p): they come close to
+  // 1, where 1 - p would lose all its digits in single precision.
+
   // Message from the pixels before to this one, given the message `previous`
   // that the pixel before received.
   TAPA_INLINE static float Forward(float emission, float previous) {
-    const float off =
-        (previous * kChange + (1.0f - previous) * kNoChange) * kUniform;
-    const float on =
-        (previous * kNoChange + (1.0f - previous) * kChange) * emission;
-    return on / (off + on);
+    return emission * (previous * kNoChange + kChange) /
+           (kUniform * (previous * kChange + kNoChange));
   }
 
   // Message from the pixels after, this one's emission included.
   TAPA_INLINE static float Backward(float emission, float next) {
     const float seen = next * emission;
-    const float unseen = (1.0f - next) * kUniform;
-    const float off = seen * kChange + unseen * kNoChange;
-    const float on = seen * kNoChange + unseen * kChange;
-    return on / (off + on);
+    return (seen * kNoChange + kUniform * kChange) /
+           (seen * kChange + kUniform * kNoChange);
   }
 
   // Probability that the view sees the pixel. `previous` is the probability
   // from the sweep before, which counts with `previous_weight`.
   TAPA_INLINE static float Probability(float forward, float backward,
                                        float previous, float previous_weight) {
-    const float off = (1.0f - forward) * (1.0f - backward);
-    const float on = forward * backward;
+    const float odds = forward * backward;
     return previous_weight * previous +
-           (1.0f - previous_weight) * (on / (off + on));
+           (1.0f - previous_weight) * (odds / (1.0f + odds));
   }
 };
 

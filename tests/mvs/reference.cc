@@ -1,0 +1,447 @@
+#include "tests/mvs/reference.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "src/mvs/random.h"
+
+namespace tapa::reference {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+constexpr double kPi = 3.14159265358979323846;
+
+Matrix3d Intrinsics(const View& view) {
+  Matrix3d K;
+  K << view.camera.fx, 0, view.camera.cx, 0, view.camera.fy, view.camera.cy, 0,
+      0, 1;
+  return K;
+}
+
+Matrix3d Rotation(const View& view) {
+  return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(
+      view.camera.R.data());
+}
+
+Vector3d Translation(const View& view) {
+  return Eigen::Map<const Vector3d>(view.camera.t.data());
+}
+
+struct RelativePose {
+  Matrix3d R;
+  Vector3d t;
+};
+
+RelativePose FromReference(const Problem& problem, int m) {
+  RelativePose pose;
+  pose.R =
+      Rotation(problem.sources[m]) * Rotation(problem.reference).transpose();
+  pose.t =
+      Translation(problem.sources[m]) - pose.R * Translation(problem.reference);
+  return pose;
+}
+
+Vector3d ToEigen(const Vec3& v) { return Vector3d(v.x, v.y, v.z); }
+
+Vector3d Ray(const Problem& problem, int row, int col) {
+  return Intrinsics(problem.reference).inverse() * Vector3d(col, row, 1);
+}
+
+Matrix3d Homography(const Problem& problem, int row, int col,
+                    const Plane& plane, int m) {
+  const RelativePose pose = FromReference(problem, m);
+  const Vector3d n = ToEigen(plane.normal);
+  const double distance = plane.depth * n.dot(Ray(problem, row, col));
+  return Intrinsics(problem.sources[m]) *
+         (pose.R + pose.t * n.transpose() / distance) *
+         Intrinsics(problem.reference).inverse();
+}
+
+// 0 to 1, black outside.
+double Pixel(const Map<uint8_t>& image, int row, int col) {
+  const bool inside =
+      row >= 0 && col >= 0 && row < image.height() && col < image.width();
+  return inside ? image.At(row, col) / 255.0 : 0.0;
+}
+
+double Bilinear(const Map<uint8_t>& image, double x, double y) {
+  if (!(x > -1 && y > -1 && x < image.width() && y < image.height())) {
+    return 0;
+  }
+  const int col = static_cast<int>(std::floor(x));
+  const int row = static_cast<int>(std::floor(y));
+  const double fx = x - col;
+  const double fy = y - row;
+  return (1 - fy) * ((1 - fx) * Pixel(image, row, col) +
+                     fx * Pixel(image, row, col + 1)) +
+         fy * ((1 - fx) * Pixel(image, row + 1, col) +
+               fx * Pixel(image, row + 1, col + 1));
+}
+
+}  // namespace
+
+double PhotometricCost(const Options& options, const Problem& problem, int row,
+                       int col, const Plane& plane, int m) {
+  const Map<uint8_t>& ref = *problem.reference.image;
+  const Matrix3d H = Homography(problem, row, col, plane, m);
+  const int r = options.window_radius;
+  const double sigma_spatial =
+      options.sigma_spatial > 0 ? options.sigma_spatial : r;
+  double sum_w = 0, sum_r = 0, sum_s = 0, sum_rr = 0, sum_ss = 0, sum_rs = 0;
+  for (int dy = -r; dy <= r; dy += options.window_step) {
+    for (int dx = -r; dx <= r; dx += options.window_step) {
+      const double reference = Pixel(ref, row + dy, col + dx);
+      const double difference = reference - Pixel(ref, row, col);
+      const double w =
+          std::exp(-(dx * dx + dy * dy) / (2 * sigma_spatial * sigma_spatial) -
+                   difference * difference /
+                       (2 * options.sigma_color * options.sigma_color));
+      const Vector3d p = H * Vector3d(col + dx, row + dy, 1);
+      const double source = p(2) > 0 ? Bilinear(*problem.sources[m].image,
+                                                p(0) / p(2), p(1) / p(2))
+                                     : 0;
+      sum_w += w;
+      sum_r += w * reference;
+      sum_s += w * source;
+      sum_rr += w * reference * reference;
+      sum_ss += w * source * source;
+      sum_rs += w * reference * source;
+    }
+  }
+  const double mean_r = sum_r / sum_w;
+  const double mean_s = sum_s / sum_w;
+  const double var_r = sum_rr / sum_w - mean_r * mean_r;
+  const double var_s = sum_ss / sum_w - mean_s * mean_s;
+  if (var_r < 1e-5 || var_s < 1e-5) {
+    return 2;
+  }
+  const double covariance = sum_rs / sum_w - mean_r * mean_s;
+  return std::clamp(1 - covariance / std::sqrt(var_r * var_s), 0.0, 2.0);
+}
+
+double GeometricCost(const Options& options, const Problem& problem, int row,
+                     int col, double depth, int m) {
+  const double max_cost = options.geom_consistency_max_cost;
+  const RelativePose pose = FromReference(problem, m);
+  const View& source = problem.sources[m];
+  const Vector3d p =
+      Intrinsics(source) * (pose.R * (depth * Ray(problem, row, col)) + pose.t);
+  if (!(p(2) > 0)) {
+    return max_cost;
+  }
+  const Vector3d q = p / p(2);
+  const int source_col = static_cast<int>(std::floor(q(0) + 0.5));
+  const int source_row = static_cast<int>(std::floor(q(1) + 0.5));
+  if (source_col < 0 || source_row < 0 || source_col >= source.depth->width() ||
+      source_row >= source.depth->height()) {
+    return max_cost;
+  }
+  const double source_depth = source.depth->At(source_row, source_col);
+  if (!(source_depth > 0)) {
+    return max_cost;
+  }
+  const Vector3d back =
+      Intrinsics(problem.reference) *
+      (pose.R.transpose() *
+       (source_depth * (Intrinsics(source).inverse() * q) - pose.t));
+  const double error =
+      std::hypot(col - back(0) / back(2), row - back(1) / back(2));
+  return error < max_cost ? error : max_cost;
+}
+
+double Emission(const Options& options, double cost) {
+  const double sigma = options.ncc_sigma;
+  const double norm =
+      2 / (std::sqrt(2 * kPi) * sigma * std::erf(2 / (sigma * std::sqrt(2.0))));
+  return norm * std::exp(-cost * cost / (2 * sigma * sigma));
+}
+
+double ForwardMessage(double emission, double previous) {
+  const double stay = 0.99999;
+  const double on = emission * (previous * stay + (1 - previous) * (1 - stay));
+  const double off = 0.5 * (previous * (1 - stay) + (1 - previous) * stay);
+  return on / (on + off);
+}
+
+double BackwardMessage(double emission, double next) {
+  const double stay = 0.99999;
+  const double on = next * emission * stay + (1 - next) * 0.5 * (1 - stay);
+  const double off = next * emission * (1 - stay) + (1 - next) * 0.5 * stay;
+  return on / (on + off);
+}
+
+double SelectionProb(double forward, double backward, double previous,
+                     double previous_weight) {
+  const double on = forward * backward;
+  const double off = (1 - forward) * (1 - backward);
+  return previous_weight * previous + (1 - previous_weight) * on / (on + off);
+}
+
+double Prior(const Options& options, const Problem& problem, int row, int col,
+             const Plane& plane, int m) {
+  const RelativePose pose = FromReference(problem, m);
+  const Vector3d point = plane.depth * Ray(problem, row, col);
+  const Vector3d to_ref = (-point).normalized();
+  const Vector3d to_source =
+      (-pose.R.transpose() * pose.t - point).normalized();
+
+  double triangulation = 1;
+  const double cos_min = std::cos(options.min_triangulation_angle * kPi / 180);
+  const double cosine = std::abs(to_ref.dot(to_source));
+  if (cosine > cos_min) {
+    const double scaled = 1 - (1 - cosine) / (1 - cos_min);
+    triangulation = std::clamp(1 - scaled * scaled, 0.0, 1.0);
+  }
+
+  const double x = 1 - std::max(0.0, to_source.dot(ToEigen(plane.normal)));
+  const double incident = std::exp(
+      -x * x /
+      (2 * options.incident_angle_sigma * options.incident_angle_sigma));
+
+  // Area of the warped window by the shoelace formula.
+  const Matrix3d H = Homography(problem, row, col, plane, m);
+  const double r = options.window_radius;
+  const double corners[4][2] = {{-r, -r}, {-r, r}, {r, r}, {r, -r}};
+  double area = 0;
+  for (int i = 0; i < 4; ++i) {
+    const double* a = corners[i];
+    const double* b = corners[(i + 1) % 4];
+    const Vector3d p = H * Vector3d(col + a[0], row + a[1], 1);
+    const Vector3d q = H * Vector3d(col + b[0], row + b[1], 1);
+    area += 0.5 * (p(0) / p(2) * q(1) / q(2) - q(0) / q(2) * p(1) / p(2));
+  }
+  const double size = 2 * r + 1;
+  const double ratio = std::abs(area) / (size * size);
+  const double resolution = ratio < 1 ? ratio : 1 / ratio;
+  return triangulation * incident * resolution;
+}
+
+double RoundCost(double cost) {
+  return std::floor(cost / 2 * 65535 + 0.5) / 65535 * 2;
+}
+
+State Initialize(const Options& options, const Problem& problem,
+                 const Map<float>& depth, const Map<Vec3>& normal) {
+  State state;
+  state.depth = depth;
+  state.normal = normal;
+  for (int row = 0; row < depth.height(); ++row) {
+    for (int col = 0; col < depth.width(); ++col) {
+      const Plane plane = {depth.At(row, col), normal.At(row, col)};
+      for (size_t m = 0; m < problem.sources.size(); ++m) {
+        state.cost.push_back(RoundCost(PhotometricCost(
+            options, problem, row, col, plane, static_cast<int>(m))));
+        state.prob.push_back(0.5);
+      }
+    }
+  }
+  return state;
+}
+
+std::vector<Position> LinePixels(const Problem& problem, int direction,
+                                 int line) {
+  const int width = problem.reference.image->width();
+  const int height = problem.reference.image->height();
+  std::vector<Position> pixels;
+  if (direction % 2 == 0) {
+    for (int row = 0; row < height; ++row) {
+      pixels.push_back({row, line});
+    }
+  } else {
+    for (int col = 0; col < width; ++col) {
+      pixels.push_back({line, col});
+    }
+  }
+  if (direction == 1 || direction == 2) {
+    std::reverse(pixels.begin(), pixels.end());
+  }
+  return pixels;
+}
+
+namespace {
+
+// Rotation of the normal as in the definition: by Rx Ry Rz, smaller and smaller
+// until it faces the camera.
+Vec3 PerturbedNormal(const Random& random, double perturbation,
+                     const Vec3& normal, const Vector3d& ray) {
+  for (int trial = 0; trial < 4; ++trial) {
+    double angle[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      angle[axis] =
+          (random.Uniform(kDrawNormal + 3 * trial + axis) - 0.5) * perturbation;
+    }
+    const Vector3d n =
+        Eigen::AngleAxisd(angle[0], Vector3d::UnitX()).toRotationMatrix() *
+        Eigen::AngleAxisd(angle[1], Vector3d::UnitY()).toRotationMatrix() *
+        Eigen::AngleAxisd(angle[2], Vector3d::UnitZ()).toRotationMatrix() *
+        ToEigen(normal);
+    if (n.dot(ray) < 0) {
+      const Vector3d unit = n.normalized();
+      return {static_cast<float>(unit(0)), static_cast<float>(unit(1)),
+              static_cast<float>(unit(2))};
+    }
+    perturbation /= 2;
+  }
+  return normal;
+}
+
+std::vector<int> DrawViews(const Options& options, const Random& random,
+                           const std::vector<double>& weights) {
+  double sum = 0;
+  for (const double weight : weights) {
+    sum += weight;
+  }
+  std::vector<int> drawn;
+  for (int i = 0; i < options.num_samples; ++i) {
+    const double u = random.Uniform(kDrawSample + i);
+    double cumulative = 0;
+    for (size_t m = 0; m < weights.size(); ++m) {
+      cumulative += weights[m] / sum;
+      if (u < cumulative) {
+        drawn.push_back(static_cast<int>(m));
+        break;
+      }
+    }
+  }
+  return drawn;
+}
+
+}  // namespace
+
+void Sweep(const Options& options, const Problem& problem, int index,
+           State* state) {
+  const int num_sources = static_cast<int>(problem.sources.size());
+  const int width = state->depth.width();
+  const int direction = index % 4;
+  const int num_lines = direction % 2 == 0 ? width : state->depth.height();
+  const double perturbation = std::pow(2.0, -(index / 4 + direction / 4.0));
+  const double previous_weight =
+      static_cast<double>(index) / (4 * options.num_iterations);
+  for (int line = 0; line < num_lines; ++line) {
+    const std::vector<Position> pixels = LinePixels(problem, direction, line);
+    const int length = static_cast<int>(pixels.size());
+    const auto at = [&](int i, int m) {
+      return (static_cast<size_t>(pixels[i].row) * width + pixels[i].col) *
+                 num_sources +
+             m;
+    };
+    std::vector<std::vector<double>> backward(length,
+                                              std::vector<double>(num_sources));
+    for (int m = 0; m < num_sources; ++m) {
+      double message = 0.5;
+      for (int i = length - 1; i >= 0; --i) {
+        message =
+            BackwardMessage(Emission(options, state->cost[at(i, m)]), message);
+        backward[i][m] = message;
+      }
+    }
+
+    std::vector<double> forward(num_sources, 0.5);
+    Position before = pixels[0];
+    for (int i = 0; i < length; ++i) {
+      const auto [row, col] = pixels[i];
+      const Plane current = {state->depth.At(row, col),
+                             state->normal.At(row, col)};
+      const Random random(options.seed,
+                          static_cast<uint64_t>(row) * width + col, index);
+      std::vector<double> weights(num_sources);
+      for (int m = 0; m < num_sources; ++m) {
+        const double alpha = ForwardMessage(
+            Emission(options, state->cost[at(i, m)]), forward[m]);
+        weights[m] = SelectionProb(alpha, backward[i][m], state->prob[at(i, m)],
+                                   previous_weight) *
+                     Prior(options, problem, row, col, current, m);
+      }
+      const std::vector<int> drawn = DrawViews(options, random, weights);
+
+      const Vector3d ray = Ray(problem, row, col);
+      const Vec3 previous_normal = state->normal.At(before.row, before.col);
+      const double slope = ToEigen(previous_normal).dot(ray);
+      const double previous_depth = state->depth.At(before.row, before.col);
+      const double propagated =
+          std::abs(slope) < 1e-5
+              ? previous_depth
+              : previous_depth *
+                    ToEigen(previous_normal)
+                        .dot(Ray(problem, before.row, before.col)) /
+                    slope;
+      const float random_depth = static_cast<float>(
+          current.depth *
+          (1 - perturbation + 2 * perturbation * random.Uniform(kDrawDepth)));
+      const Vec3 random_normal =
+          PerturbedNormal(random, perturbation, current.normal, ray);
+      const std::vector<Plane> planes = {
+          current,
+          {static_cast<float>(propagated), previous_normal},
+          {random_depth, random_normal},
+          {current.depth, random_normal},
+          {random_depth, current.normal}};
+
+      size_t best = 0;
+      double best_cost = std::numeric_limits<double>::infinity();
+      for (size_t k = 0; k < planes.size(); ++k) {
+        if (k > 0 && (!(planes[k].depth > 0) ||
+                      !(ToEigen(planes[k].normal).dot(ray) < 0))) {
+          continue;
+        }
+        double cost = 0;
+        for (const int m : drawn) {
+          cost += k == 0 ? state->cost[at(i, m)]
+                         : RoundCost(PhotometricCost(options, problem, row, col,
+                                                     planes[k], m));
+          if (options.geom_consistency) {
+            cost +=
+                options.geom_consistency_regularizer *
+                GeometricCost(options, problem, row, col, planes[k].depth, m);
+          }
+        }
+        // The engine adds up in single precision: ties are equal to that.
+        if (cost <= best_cost + 1e-9) {
+          best = k;
+          best_cost = cost;
+        }
+      }
+      for (int m = 0; m < num_sources; ++m) {
+        if (best != 0) {
+          state->cost[at(i, m)] = RoundCost(
+              PhotometricCost(options, problem, row, col, planes[best], m));
+        }
+        forward[m] = ForwardMessage(Emission(options, state->cost[at(i, m)]),
+                                    forward[m]);
+        state->prob[at(i, m)] = SelectionProb(
+            forward[m], backward[i][m], state->prob[at(i, m)], previous_weight);
+      }
+      state->depth.At(row, col) = planes[best].depth;
+      state->normal.At(row, col) = planes[best].normal;
+      before = pixels[i];
+    }
+  }
+}
+
+int CountConsistent(const Options& options, const Problem& problem, int row,
+                    int col, const Plane& plane, const double* prob) {
+  const Vector3d point = plane.depth * Ray(problem, row, col);
+  int count = 0;
+  for (size_t m = 0; m < problem.sources.size(); ++m) {
+    const RelativePose pose = FromReference(problem, static_cast<int>(m));
+    const Vector3d to_source = -pose.R.transpose() * pose.t - point;
+    const double angle =
+        std::acos(std::clamp((-point).normalized().dot(to_source.normalized()),
+                             -1.0, 1.0)) *
+        180 / kPi;
+    count += angle >= options.filter_min_triangulation_angle &&
+             to_source.dot(ToEigen(plane.normal)) > 0 &&
+             prob[m] >= Emission(options, 1 - options.filter_min_ncc) &&
+             (!options.geom_consistency ||
+              GeometricCost(options, problem, row, col, plane.depth,
+                            static_cast<int>(m)) <=
+                  options.filter_geom_consistency_max_cost);
+  }
+  return count;
+}
+
+}  // namespace tapa::reference

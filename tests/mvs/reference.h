@@ -1,0 +1,68 @@
+#ifndef TAPA_TESTS_MVS_REFERENCE_H_
+#define TAPA_TESTS_MVS_REFERENCE_H_
+
+#include <vector>
+
+#include "src/mvs/estimate_depth.h"
+#include "src/mvs/plane.h"
+
+// The algorithm once more, as literally and slowly as possible, in double
+// precision and without sharing code with the engine but the random numbers:
+// what the engine is compared with.
+namespace tapa::reference {
+
+// 1 - NCC of the window around a reference pixel with its image in source view
+// m, the window being warped by the plane's homography.
+double PhotometricCost(const Options& options, const Problem& problem, int row,
+                       int col, const Plane& plane, int m);
+
+// Forward-backward reprojection error in pixels, truncated.
+double GeometricCost(const Options& options, const Problem& problem, int row,
+                     int col, double depth, int m);
+
+double Emission(const Options& options, double cost);
+double ForwardMessage(double emission, double previous);
+double BackwardMessage(double emission, double next);
+double SelectionProb(double forward, double backward, double previous,
+                     double previous_weight);
+
+// Product of the three priors of a source view.
+double Prior(const Options& options, const Problem& problem, int row, int col,
+             const Plane& plane, int m);
+
+// State of all pixels, values of the views at [pixel * sources + m].
+struct State {
+  Map<float> depth;
+  Map<Vec3> normal;
+  std::vector<double> cost;
+  std::vector<double> prob;
+};
+
+// Costs as the engine stores them, in steps of 2 / 65535.
+double RoundCost(double cost);
+
+State Initialize(const Options& options, const Problem& problem,
+                 const Map<float>& depth, const Map<Vec3>& normal);
+
+// One sweep without filter; `index` counts sweeps from 0, its remainder by 4
+// gives the direction.
+void Sweep(const Options& options, const Problem& problem, int index,
+           State* state);
+
+struct Position {
+  int row;
+  int col;
+};
+
+// Pixels of one line of a sweep in its order. Directions 0 to 3 are down, left,
+// up, right; lines are columns in the first and third, otherwise rows.
+std::vector<Position> LinePixels(const Problem& problem, int direction,
+                                 int line);
+
+// Number of views that support the estimate of a pixel in the last sweep.
+int CountConsistent(const Options& options, const Problem& problem, int row,
+                    int col, const Plane& plane, const double* prob);
+
+}  // namespace tapa::reference
+
+#endif  // TAPA_TESTS_MVS_REFERENCE_H_

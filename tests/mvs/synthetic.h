@@ -1,0 +1,54 @@
+#ifndef TAPA_TESTS_MVS_SYNTHETIC_H_
+#define TAPA_TESTS_MVS_SYNTHETIC_H_
+
+#include <random>
+#include <vector>
+
+#include "src/mvs/estimate_depth.h"
+
+namespace tapa {
+
+// Small scenes with known depth for tests.
+
+struct SyntheticOptions {
+  int width = 48;
+  int height = 40;
+  int num_sources = 4;
+  // Distance of the surface along the reference camera's optical axis.
+  double depth = 4.0;
+  // Its unnormalized normal in the reference camera's frame.
+  double normal[3] = {0.2, -0.1, -1.0};
+  double focal_length = 60.0;
+  // Spread of the source cameras' centres around the reference camera.
+  double baseline = 0.6;
+  unsigned seed = 1;
+};
+
+// A textured plane seen by a reference camera and several source cameras that
+// are turned, moved and zoomed at random. Owns what `problem` points to.
+class SyntheticPlane {
+ public:
+  explicit SyntheticPlane(const SyntheticOptions& options);
+
+  const Problem& problem() const { return problem_; }
+  // True depth of the reference view, and its true normal.
+  const Map<float>& depth() const { return depths_[0]; }
+  Vec3 normal() const { return normal_; }
+
+  // The problem of the geometric pass with the true maps as input.
+  Problem GeometricProblem() const;
+
+ private:
+  Problem problem_;
+  Vec3 normal_;
+  // Of the reference view first, then of the source views.
+  std::vector<Map<uint8_t>> images_;
+  std::vector<Map<float>> depths_;
+};
+
+// Noise, independent from pixel to pixel.
+Map<uint8_t> RandomImage(int width, int height, std::mt19937* random);
+
+}  // namespace tapa
+
+#endif  // TAPA_TESTS_MVS_SYNTHETIC_H_
