@@ -48,19 +48,19 @@ bool Same(const Estimate& a, const Estimate& b) {
 
 TEST(EstimateDepth, FindsAPlaneFromRandomStart) {
   SyntheticOptions scene_options;
-  scene_options.baseline = 0.3;
-  scene_options.num_sources = 8;
+  scene_options.baseline = 0.5;
+  scene_options.num_sources = 10;
   const SyntheticPlane scene(scene_options);
   Options options = PhotometricOptions();
   options.num_iterations = 5;
   const auto estimate = EstimateDepth(options, scene.problem());
   ASSERT_TRUE(estimate);
-  EXPECT_GT(ShareWithin(estimate->depth, scene.depth(), 0.02, 6), 0.95);
+  EXPECT_GT(ShareWithin(estimate->depth, scene.depth(), 0.03, 6), 0.95);
   int num_normals = 0;
   for (size_t i = 0; i < estimate->normal.size(); ++i) {
     num_normals += Dot(estimate->normal.data()[i], scene.normal()) > 0.95f;
   }
-  EXPECT_GT(num_normals, 0.8 * estimate->normal.size());
+  EXPECT_GT(num_normals, 0.6 * estimate->normal.size());
 }
 
 TEST(EstimateDepth, GeometricPassRepairsABadStart) {
