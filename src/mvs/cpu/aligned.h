@@ -3,16 +3,17 @@
 
 #include <hwy/aligned_allocator.h>
 
-#include <algorithm>
 #include <cstddef>
+#include <cstring>
 
 namespace tapa {
 
-// Array that starts on a SIMD vector's boundary, filled with zeros.
+// Array that starts on a SIMD vector's boundary, filled with zeros; T is a
+// number.
 template <typename T>
 hwy::AlignedFreeUniquePtr<T[]> MakeAligned(size_t count) {
   auto array = hwy::AllocateAligned<T>(count);
-  std::fill_n(array.get(), count, T());
+  std::memset(array.get(), 0, count * sizeof(T));
   return array;
 }
 
