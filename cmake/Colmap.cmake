@@ -2,10 +2,17 @@
 # inside. The program is the target colmap_exe, at bin/colmap.
 
 option(TAPA_WITH_GUI "Build COLMAP's graphical user interface" ON)
-set(COLMAP_SOURCE_DIR "$ENV{COLMAP_SOURCE_DIR}" CACHE PATH
-    "Unpacked source of COLMAP 3.8; empty: Debian's source package")
 
 set(colmap_dir ${CMAKE_BINARY_DIR}/colmap-3.8)
+# COLMAP_SOURCE_DIR may be given in the environment or as -DCOLMAP_SOURCE_DIR;
+# COLMAP's own project() takes that variable's name afterwards.
+set(TAPA_COLMAP_SOURCE_DIR "$ENV{COLMAP_SOURCE_DIR}" CACHE PATH
+    "Unpacked source of COLMAP 3.8; empty: Debian's source package")
+if(COLMAP_SOURCE_DIR AND NOT COLMAP_SOURCE_DIR STREQUAL colmap_dir)
+  set_property(CACHE TAPA_COLMAP_SOURCE_DIR PROPERTY VALUE
+    "${COLMAP_SOURCE_DIR}")
+endif()
+
 set(patches_dir ${CMAKE_SOURCE_DIR}/patches/colmap-3.8)
 file(GLOB patches CONFIGURE_DEPENDS ${patches_dir}/*.patch)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS
@@ -13,12 +20,16 @@ set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS
   ${CMAKE_SOURCE_DIR}/scripts/prepare_colmap.sh
   ${CMAKE_SOURCE_DIR}/scripts/fetch_colmap.sh)
 execute_process(
-  COMMAND ${CMAKE_COMMAND} -E env COLMAP_SOURCE_DIR=${COLMAP_SOURCE_DIR}
+  COMMAND ${CMAKE_COMMAND} -E env COLMAP_SOURCE_DIR=${TAPA_COLMAP_SOURCE_DIR}
           ${CMAKE_SOURCE_DIR}/scripts/prepare_colmap.sh ${colmap_dir}
   RESULT_VARIABLE result)
 if(NOT result EQUAL 0)
   message(FATAL_ERROR "The source of COLMAP could not be prepared (see above).")
 endif()
+
+# COLMAP's sources include some headers of ours, as "tapa/...".
+file(CREATE_LINK ${CMAKE_SOURCE_DIR}/src/colmap ${colmap_dir}/src/tapa
+  SYMBOLIC)
 
 # COLMAP's own CUDA code does not compile with today's CUDA, and the engine
 # replaces the part that matters here.

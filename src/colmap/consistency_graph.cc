@@ -1,0 +1,35 @@
+#include "src/colmap/consistency_graph.h"
+
+namespace tapa {
+
+std::vector<int32_t> ConsistencyGraph(const Estimate& estimate,
+                                      const std::vector<int>& source_indices) {
+  std::vector<int32_t> graph;
+  if (estimate.consistent.empty()) {
+    return graph;
+  }
+  const size_t num_sources = source_indices.size();
+  const size_t bytes_per_pixel = (num_sources + 7) / 8;
+  const uint8_t* bits = estimate.consistent.data();
+  for (int row = 0; row < estimate.depth.height(); ++row) {
+    for (int col = 0; col < estimate.depth.width(); ++col) {
+      const size_t begin = graph.size();
+      graph.insert(graph.end(), {col, row, 0});
+      for (size_t m = 0; m < num_sources; ++m) {
+        if ((bits[m / 8] >> (m % 8)) & 1) {
+          graph.push_back(source_indices[m]);
+        }
+      }
+      const size_t num_consistent = graph.size() - begin - 3;
+      if (num_consistent == 0) {
+        graph.resize(begin);
+      } else {
+        graph[begin + 2] = static_cast<int32_t>(num_consistent);
+      }
+      bits += bytes_per_pixel;
+    }
+  }
+  return graph;
+}
+
+}  // namespace tapa

@@ -1,0 +1,29 @@
+#ifndef TAPA_SRC_COLMAP_ENGINE_OPTIONS_H_
+#define TAPA_SRC_COLMAP_ENGINE_OPTIONS_H_
+
+#include <cstdint>
+#include <string>
+
+#include "mvs/patch_match.h"
+#include "src/mvs/options.h"
+
+namespace tapa {
+
+// Throws Failure that names the option, if one is out of range.
+void CheckOptions(const colmap::mvs::PatchMatchOptions& options);
+
+// The engine's options for the last pass of a run: the geometric one, if
+// options.geom_consistency, else the photometric one.
+Options FinalPassOptions(const colmap::mvs::PatchMatchOptions& options);
+
+// The engine's options for the photometric pass before a geometric one, which
+// does not filter.
+Options FirstPassOptions(const colmap::mvs::PatchMatchOptions& options);
+
+// Key of the random draws for a view in a pass. It does not depend on other
+// views, nor on their order, so that a resumed run gives the same maps.
+uint64_t ViewSeed(uint64_t seed, const std::string& image_name, bool geometric);
+
+}  // namespace tapa
+
+#endif  // TAPA_SRC_COLMAP_ENGINE_OPTIONS_H_

@@ -1,0 +1,36 @@
+#ifndef TAPA_SRC_COLMAP_FATAL_ERRORS_H_
+#define TAPA_SRC_COLMAP_FATAL_ERRORS_H_
+
+#include <ctime>
+#include <string>
+
+#include <glog/logging.h>
+
+// This header is included by COLMAP's own sources.
+
+namespace tapa {
+
+// While one of these lives, what COLMAP checks with CHECK and LOG(FATAL) ends
+// the program with one line "ERROR: CONTEXT: ..." and exit status 1, in place
+// of a stack trace and an abort. Do not nest.
+class FatalErrors : public google::LogSink {
+ public:
+  explicit FatalErrors(const std::string& context);
+  ~FatalErrors() override;
+
+  FatalErrors(const FatalErrors&) = delete;
+  FatalErrors& operator=(const FatalErrors&) = delete;
+
+  using google::LogSink::send;
+  void send(google::LogSeverity severity, const char* full_filename,
+            const char* base_filename, int line, const struct ::tm* time,
+            const char* message, size_t length) override;
+
+ private:
+  const std::string context_;
+  const int stderr_threshold_;
+};
+
+}  // namespace tapa
+
+#endif  // TAPA_SRC_COLMAP_FATAL_ERRORS_H_

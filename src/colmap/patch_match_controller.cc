@@ -1,0 +1,107 @@
+// The implementation of COLMAP's mvs/patch_match.h. Upstream's, which needs
+// CUDA, is not compiled.
+
+#include <cstdlib>
+#include <exception>
+#include <iostream>
+#include <new>
+#include <thread>
+
+#include "mvs/patch_match.h"
+#include "src/colmap/failure.h"
+#include "src/colmap/interrupt.h"
+#include "src/colmap/stereo_run.h"
+#include "util/misc.h"
+
+namespace colmap {
+namespace mvs {
+
+void PatchMatchOptions::Print() const {
+  PrintHeading2("PatchMatchOptions");
+  const auto print = [](const std::string& name, const auto* value,
+                        const std::string& /* help */) {
+    std::cout << name << ": " << *value << std::endl;
+  };
+#define PRINT_OPTION(option) print(#option, &option, "")
+  PRINT_OPTION(max_image_size);
+  PRINT_OPTION(gpu_index);
+  PRINT_OPTION(depth_min);
+  PRINT_OPTION(depth_max);
+  PRINT_OPTION(window_radius);
+  PRINT_OPTION(window_step);
+  PRINT_OPTION(sigma_spatial);
+  PRINT_OPTION(sigma_color);
+  PRINT_OPTION(num_samples);
+  PRINT_OPTION(ncc_sigma);
+  PRINT_OPTION(min_triangulation_angle);
+  PRINT_OPTION(incident_angle_sigma);
+  PRINT_OPTION(num_iterations);
+  PRINT_OPTION(geom_consistency);
+  PRINT_OPTION(geom_consistency_regularizer);
+  PRINT_OPTION(geom_consistency_max_cost);
+  PRINT_OPTION(filter);
+  PRINT_OPTION(filter_min_ncc);
+  PRINT_OPTION(filter_min_triangulation_angle);
+  PRINT_OPTION(filter_min_num_consistent);
+  PRINT_OPTION(filter_geom_consistency_max_cost);
+  PRINT_OPTION(cache_size);
+  PRINT_OPTION(allow_missing_files);
+  PRINT_OPTION(write_consistency_graph);
+#undef PRINT_OPTION
+  Visit(print);
+}
+
+PatchMatchController::PatchMatchController(const PatchMatchOptions& options,
+                                           const std::string& workspace_path,
+                                           const std::string& workspace_format,
+                                           const std::string& pmvs_option_name,
+                                           const std::string& config_path)
+    : options_(options),
+      workspace_path_(workspace_path),
+      workspace_format_(workspace_format),
+      pmvs_option_name_(pmvs_option_name),
+      config_path_(config_path) {}
+
+void PatchMatchController::Run() {
+  PrintHeading1("Dense stereo");
+  options_.Print();
+  std::cout << std::endl;
+
+  tapa::WorkspaceLocation location;
+  location.path = workspace_path_;
+  location.format = workspace_format_;
+  location.pmvs_option_name = pmvs_option_name_;
+  location.config_path = config_path_;
+
+  const tapa::Interrupt interrupt;
+  const auto stopped = [&] { return interrupt.Signal() != 0 || IsStopped(); };
+  exit_status_ = EXIT_FAILURE;
+  try {
+    tapa::StereoRun run(options_, location);
+    if (options_.use_gpu) {
+      std::cout << "This program has no GPU backend: the CPU is used."
+                << std::endl;
+    }
+    if (run.Run(stopped)) {
+      exit_status_ = EXIT_SUCCESS;
+    } else {
+      if (interrupt.Signal() != 0) {
+        exit_status_ = 128 + interrupt.Signal();
+      }
+      std::cout << "Stopped with " << run.NumDone() << " of "
+                << run.NumViews()
+                << " views complete; start it again to go on from there."
+                << std::endl;
+    }
+  } catch (const std::bad_alloc&) {
+    std::cerr << "ERROR: There is not enough memory; lower "
+                 "--PatchMatchStereo.max_image_size or cache_size."
+              << std::endl;
+  } catch (const std::exception& error) {
+    std::cerr << "ERROR: " << error.what() << "." << std::endl;
+  }
+  GetTimer().PrintMinutes();
+}
+
+}  // namespace mvs
+}  // namespace colmap

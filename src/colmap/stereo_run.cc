@@ -1,0 +1,353 @@
+#include "src/colmap/stereo_run.h"
+
+#include <algorithm>
+#include <iostream>
+#include <new>
+#include <set>
+#include <stdexcept>
+#include <unordered_set>
+
+#include "src/colmap/consistency_graph.h"
+#include "src/colmap/engine_options.h"
+#include "src/colmap/failure.h"
+#include "src/colmap/map_files.h"
+#include "src/mvs/estimate_depth.h"
+#include "util/misc.h"
+
+namespace tapa {
+namespace {
+
+using colmap::ExistsPath;
+
+double Megapixels(const SceneView& view) {
+  return 1e-6 * view.width * view.height;
+}
+
+Failure Damaged(const std::string& path, const std::string& error) {
+  return Failure(path + " " + error +
+                 "; remove it to have it computed again, or take the "
+                 "max_image_size that it was computed with");
+}
+
+void PrintWarning(const std::string& text) {
+  std::cout << "WARNING: " << text << std::endl;
+}
+
+}  // namespace
+
+StereoRun::StereoRun(const colmap::mvs::PatchMatchOptions& options,
+                     const WorkspaceLocation& location)
+    : options_(options), location_(location) {}
+
+bool StereoRun::Run(const std::function<bool()>& stopped) {
+  Prepare();
+
+  double total = 0;
+  for (const Pass pass : {Pass::kPhotometric, Pass::kGeometric}) {
+    for (const ViewIndices& problem : problems_) {
+      if (pass <= FinalPass() && !IsDone(problem.reference, pass)) {
+        total += Megapixels(views_[problem.reference]);
+      }
+    }
+  }
+  progress_ = std::make_unique<Progress>(total);
+
+  if (FinalPass() == Pass::kGeometric &&
+      !ComputePass(Pass::kPhotometric, stopped)) {
+    return false;
+  }
+  if (!ComputePass(FinalPass(), stopped)) {
+    return false;
+  }
+  progress_->PrintSummary();
+  return true;
+}
+
+void StereoRun::Prepare() {
+  CheckOptions(options_);
+  std::cout << "Reading workspace " << location_.path << " ..." << std::endl;
+  const colmap::mvs::Model model = ReadWorkspace(location_);
+  views_ = SceneViews(model, options_.max_image_size);
+  problems_ = ResolveProblems(ReadProblemConfig(location_.ConfigPath()), model,
+                              options_.min_triangulation_angle);
+  DropMissing();
+  CheckInputs();
+  PrepareFolders();
+  std::cout << "Configuration has " << NumViews() << " views." << std::endl;
+
+  // A depth map takes four times the bytes of its photograph.
+  const double cache_bytes = options_.cache_size * 1024 * 1024 * 1024;
+  photos_ = std::make_unique<ViewCache<uint8_t>>(
+      cache_bytes / 5, [this](int view) { return ReadPhoto(views_[view]); });
+  depth_maps_ = std::make_unique<ViewCache<float>>(
+      cache_bytes * 4 / 5, [this](int view) {
+        return ReadDepthMap(MapPath("depth_maps", view, Pass::kPhotometric),
+                            views_[view].width, views_[view].height);
+      });
+}
+
+// Finds images and maps that are missing, and views that have no sources.
+void StereoRun::DropMissing() {
+  // A view that is dropped makes no map for others.
+  while (DropMissingOnce()) {
+  }
+  if (problems_.empty()) {
+    throw Failure("There is no view left that stereo can be computed for");
+  }
+}
+
+// Returns whether it has dropped anything.
+bool StereoRun::DropMissingOnce() {
+  std::unordered_set<int> computed;
+  for (const ViewIndices& problem : problems_) {
+    computed.insert(problem.reference);
+  }
+  // Empty, or what a view lacks to be used.
+  const auto lacks = [&](int view) -> std::string {
+    if (!ExistsPath(views_[view].image_path)) {
+      return "its image " + views_[view].image_path + " is missing";
+    }
+    const std::string map_path =
+        MapPath("depth_maps", view, Pass::kPhotometric);
+    if (FinalPass() == Pass::kGeometric && computed.count(view) == 0 &&
+        !ExistsPath(map_path)) {
+      return "the map " + map_path +
+             " is missing and the view is not in the list of views to compute";
+    }
+    return "";
+  };
+  const auto drop = [&](const std::string& text) {
+    if (!options_.allow_missing_files) {
+      throw Failure(text + "; to leave it out, set "
+                    "--PatchMatchStereo.allow_missing_files 1");
+    }
+    PrintWarning(text + "; it is left out");
+  };
+
+  bool dropped = false;
+  std::vector<ViewIndices> kept_problems;
+  for (const ViewIndices& problem : problems_) {
+    const std::string& name = views_[problem.reference].name;
+    ViewIndices kept;
+    kept.reference = problem.reference;
+    std::string error = lacks(problem.reference);
+    if (error.empty()) {
+      for (const int source : problem.sources) {
+        const std::string source_error = lacks(source);
+        if (source_error.empty()) {
+          kept.sources.push_back(source);
+        } else {
+          drop("Source image " + views_[source].name + " of " + name +
+               " cannot be used: " + source_error);
+          dropped = true;
+        }
+      }
+      if (kept.sources.empty()) {
+        error = "it has no source images (none shares enough points with it, "
+                "or none is named)";
+      }
+    }
+    if (error.empty()) {
+      kept_problems.push_back(kept);
+    } else {
+      drop("View " + name + " cannot be computed: " + error);
+      dropped = true;
+    }
+  }
+  problems_ = kept_problems;
+  return dropped;
+}
+
+// Looks at everything that is going to be read, before hours are spent.
+void StereoRun::CheckInputs() const {
+  std::set<int> used;
+  std::set<int> computed;
+  for (const ViewIndices& problem : problems_) {
+    const SceneView& view = views_[problem.reference];
+    if (options_.depth_min < 0 && !(view.depth_min > 0)) {
+      throw Failure("The sparse model has no points in view " + view.name +
+                    " to take its range of depths from; set "
+                    "--PatchMatchStereo.depth_min and depth_max");
+    }
+    used.insert(problem.reference);
+    used.insert(problem.sources.begin(), problem.sources.end());
+    computed.insert(problem.reference);
+  }
+  for (const int view : used) {
+    CheckPhoto(views_[view]);
+    const std::string depth_path =
+        MapPath("depth_maps", view, Pass::kPhotometric);
+    if (computed.count(view) > 0) {
+      for (const Pass pass : {Pass::kPhotometric, FinalPass()}) {
+        IsDone(view, pass);
+      }
+    } else if (FinalPass() == Pass::kGeometric) {
+      const std::string error = CheckMapFile(depth_path, views_[view].width,
+                                             views_[view].height, 1);
+      if (!error.empty()) {
+        throw Damaged(depth_path, error);
+      }
+    }
+  }
+}
+
+void StereoRun::PrepareFolders() const {
+  std::set<std::string> folders;
+  for (const Pass pass : {Pass::kPhotometric, Pass::kGeometric}) {
+    for (const ViewIndices& problem : problems_) {
+      if (pass > FinalPass() || IsDone(problem.reference, pass)) {
+        continue;
+      }
+      for (const char* kind :
+           {"depth_maps", "normal_maps", "consistency_graphs"}) {
+        if (std::string(kind) != "consistency_graphs" || WritesGraph(pass)) {
+          folders.insert(colmap::GetParentDir(
+              MapPath(kind, problem.reference, pass)));
+        }
+      }
+    }
+  }
+  for (const std::string& folder : folders) {
+    PrepareMapFolder(folder);
+  }
+}
+
+StereoRun::Pass StereoRun::FinalPass() const {
+  return options_.geom_consistency ? Pass::kGeometric : Pass::kPhotometric;
+}
+
+std::string StereoRun::MapPath(const std::string& kind, int view,
+                               Pass pass) const {
+  return location_.MapPath(kind, views_[view].name, pass == Pass::kGeometric);
+}
+
+bool StereoRun::WritesGraph(Pass pass) const {
+  // The pass before the final one does not filter.
+  return options_.write_consistency_graph && pass == FinalPass();
+}
+
+bool StereoRun::IsDone(int view, Pass pass) const {
+  const int width = views_[view].width;
+  const int height = views_[view].height;
+  const auto is_there = [&](const char* kind, int channels) {
+    const std::string path = MapPath(kind, view, pass);
+    if (!ExistsPath(path)) {
+      return false;
+    }
+    const std::string error =
+        channels == 0 ? CheckGraphFile(path, width, height)
+                      : CheckMapFile(path, width, height, channels);
+    if (!error.empty()) {
+      throw Damaged(path, error);
+    }
+    return true;
+  };
+  const bool has_depth = is_there("depth_maps", 1);
+  const bool has_normal = is_there("normal_maps", 3);
+  const bool has_graph =
+      !WritesGraph(pass) || is_there("consistency_graphs", 0);
+  return has_depth && has_normal && has_graph;
+}
+
+bool StereoRun::ComputePass(Pass pass, const std::function<bool()>& stopped) {
+  const std::string name =
+      pass == Pass::kGeometric ? "geometric " : "photometric ";
+  for (size_t i = 0; i < problems_.size(); ++i) {
+    if (stopped()) {
+      return false;
+    }
+    const ViewIndices& problem = problems_[i];
+    if (!IsDone(problem.reference, pass)) {
+      const SceneView& view = views_[problem.reference];
+      progress_->BeginView(
+          name + std::to_string(i + 1) + "/" + std::to_string(NumViews()),
+          view.name, pass == Pass::kGeometric, Megapixels(view));
+      const bool done = ComputeView(problem, pass, stopped);
+      if (!done) {
+        progress_->ClearLine();
+        return false;
+      }
+      progress_->EndView();
+    }
+    if (pass == FinalPass()) {
+      ++num_done_;
+    }
+  }
+  return true;
+}
+
+// Returns false if stopped.
+bool StereoRun::ComputeView(const ViewIndices& problem, Pass pass,
+                            const std::function<bool()>& stopped) {
+  const bool geometric = pass == Pass::kGeometric;
+  const SceneView& reference = views_[problem.reference];
+  Options options = pass == FinalPass() ? FinalPassOptions(options_)
+                                        : FirstPassOptions(options_);
+  options.seed = ViewSeed(options_.seed, reference.name, geometric);
+
+  // Keep alive what the engine borrows.
+  std::vector<std::shared_ptr<const Map<uint8_t>>> photos;
+  std::vector<std::shared_ptr<const Map<float>>> depth_maps;
+  const auto to_view = [&](int index) {
+    View view;
+    view.camera = views_[index].camera;
+    photos.push_back(photos_->Get(index));
+    view.image = photos.back().get();
+    return view;
+  };
+
+  Problem engine_problem;
+  engine_problem.reference = to_view(problem.reference);
+  for (const int source : problem.sources) {
+    engine_problem.sources.push_back(to_view(source));
+    if (geometric) {
+      depth_maps.push_back(depth_maps_->Get(source));
+      engine_problem.sources.back().depth = depth_maps.back().get();
+    }
+  }
+  if (geometric) {
+    engine_problem.depth = *depth_maps_->Get(problem.reference);
+    engine_problem.normal = ReadNormalMap(
+        MapPath("normal_maps", problem.reference, Pass::kPhotometric),
+        reference.width, reference.height);
+  }
+  const bool has_range = options_.depth_min >= 0;
+  engine_problem.depth_min =
+      has_range ? options_.depth_min : reference.depth_min;
+  engine_problem.depth_max =
+      has_range ? options_.depth_max : reference.depth_max;
+
+  Control control;
+  control.progress = [this](double share) { progress_->Update(share); };
+  control.stopped = stopped;
+
+  const size_t memory = EstimateDepthMemory(options, engine_problem);
+  std::optional<Estimate> estimate;
+  try {
+    estimate = EstimateDepth(options, std::move(engine_problem), control);
+  } catch (const std::invalid_argument& error) {
+    throw Failure("View " + reference.name +
+                  " cannot be computed: " + error.what());
+  } catch (const std::bad_alloc&) {
+    throw Failure("View " + reference.name + " needs about " +
+                  std::to_string(memory >> 20) +
+                  " MB of memory; lower --PatchMatchStereo.max_image_size or "
+                  "cache_size");
+  }
+  if (!estimate) {
+    return false;
+  }
+
+  WriteDepthMap(MapPath("depth_maps", problem.reference, pass),
+                estimate->depth);
+  WriteNormalMap(MapPath("normal_maps", problem.reference, pass),
+                 estimate->normal);
+  if (WritesGraph(pass)) {
+    WriteGraph(MapPath("consistency_graphs", problem.reference, pass),
+               reference.width, reference.height,
+               ConsistencyGraph(*estimate, problem.sources));
+  }
+  return true;
+}
+
+}  // namespace tapa

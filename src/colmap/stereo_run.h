@@ -1,0 +1,68 @@
+#ifndef TAPA_SRC_COLMAP_STEREO_RUN_H_
+#define TAPA_SRC_COLMAP_STEREO_RUN_H_
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "mvs/patch_match.h"
+#include "src/colmap/problem_config.h"
+#include "src/colmap/progress.h"
+#include "src/colmap/view_cache.h"
+#include "src/colmap/views.h"
+#include "src/colmap/workspace.h"
+
+namespace tapa {
+
+// Computes the maps of all views that a workspace's configuration lists, one
+// view after the other. What can be wrong is looked for before anything is
+// computed. Maps that are there already are kept, so that a run that was
+// stopped goes on where it was, and ends with the same files.
+class StereoRun {
+ public:
+  StereoRun(const colmap::mvs::PatchMatchOptions& options,
+            const WorkspaceLocation& location);
+
+  // Returns false if stopped() ended the run, which it can at any time; maps
+  // that are finished by then stay. Throws Failure.
+  bool Run(const std::function<bool()>& stopped);
+
+  // Number of views whose final maps are there, and of all views.
+  int NumDone() const { return num_done_; }
+  int NumViews() const { return static_cast<int>(problems_.size()); }
+
+ private:
+  // One of the two passes over all views.
+  enum class Pass { kPhotometric, kGeometric };
+
+  void Prepare();
+  void DropMissing();
+  bool DropMissingOnce();
+  void CheckInputs() const;
+  void PrepareFolders() const;
+
+  Pass FinalPass() const;
+  std::string MapPath(const std::string& kind, int view, Pass pass) const;
+  bool WritesGraph(Pass pass) const;
+  // Whether all maps of a view are there. Throws Failure if one is damaged.
+  bool IsDone(int view, Pass pass) const;
+
+  bool ComputePass(Pass pass, const std::function<bool()>& stopped);
+  bool ComputeView(const ViewIndices& problem, Pass pass,
+                   const std::function<bool()>& stopped);
+
+  const colmap::mvs::PatchMatchOptions options_;
+  const WorkspaceLocation location_;
+  std::vector<SceneView> views_;
+  std::vector<ViewIndices> problems_;
+  std::unique_ptr<ViewCache<uint8_t>> photos_;
+  // Of the photometric pass.
+  std::unique_ptr<ViewCache<float>> depth_maps_;
+  std::unique_ptr<Progress> progress_;
+  int num_done_ = 0;
+};
+
+}  // namespace tapa
+
+#endif  // TAPA_SRC_COLMAP_STEREO_RUN_H_

@@ -1,0 +1,105 @@
+#include "src/colmap/views.h"
+
+#include <FreeImage.h>
+
+#include <cstring>
+#include <memory>
+
+#include "mvs/image.h"
+#include "src/colmap/failure.h"
+#include "util/bitmap.h"
+
+namespace tapa {
+namespace {
+
+Camera ToCamera(const colmap::mvs::Image& image) {
+  Camera camera;
+  const float* K = image.GetK();
+  camera.fx = K[0];
+  camera.fy = K[4];
+  camera.cx = K[2];
+  camera.cy = K[5];
+  for (int i = 0; i < 9; ++i) {
+    camera.R[i] = image.GetR()[i];
+  }
+  for (int i = 0; i < 3; ++i) {
+    camera.t[i] = image.GetT()[i];
+  }
+  return camera;
+}
+
+Failure Unreadable(const SceneView& view) {
+  return Failure("The image " + view.image_path +
+                 " cannot be read; is it there, and is it a whole image file?");
+}
+
+void CheckSize(const SceneView& view, int width, int height) {
+  if (width != view.photo_width || height != view.photo_height) {
+    throw Failure(
+        "The image " + view.image_path + " has " + std::to_string(width) +
+        "x" + std::to_string(height) + " pixels, but its camera has " +
+        std::to_string(view.photo_width) + "x" +
+        std::to_string(view.photo_height) +
+        "; make both the same, as image_undistorter does");
+  }
+}
+
+}  // namespace
+
+std::vector<SceneView> SceneViews(const colmap::mvs::Model& model,
+                                  int max_image_size) {
+  const auto depth_ranges = model.ComputeDepthRanges();
+  std::vector<SceneView> views;
+  for (size_t i = 0; i < model.images.size(); ++i) {
+    colmap::mvs::Image image = model.images[i];
+    SceneView view;
+    view.name = model.GetImageName(i);
+    view.image_path = image.GetPath();
+    view.photo_width = static_cast<int>(image.GetWidth());
+    view.photo_height = static_cast<int>(image.GetHeight());
+    if (max_image_size > 0) {
+      image.Downsize(max_image_size, max_image_size);
+    }
+    view.width = static_cast<int>(image.GetWidth());
+    view.height = static_cast<int>(image.GetHeight());
+    view.camera = ToCamera(image);
+    view.depth_min = depth_ranges[i].first;
+    view.depth_max = depth_ranges[i].second;
+    views.push_back(view);
+  }
+  return views;
+}
+
+void CheckPhoto(const SceneView& view) {
+  const char* path = view.image_path.c_str();
+  const FREE_IMAGE_FORMAT format = FreeImage_GetFileType(path, 0);
+  if (format == FIF_UNKNOWN) {
+    throw Unreadable(view);
+  }
+  const int flags =
+      FreeImage_FIFSupportsNoPixels(format) ? FIF_LOAD_NOPIXELS : 0;
+  const std::unique_ptr<FIBITMAP, decltype(&FreeImage_Unload)> header(
+      FreeImage_Load(format, path, flags), &FreeImage_Unload);
+  if (header == nullptr) {
+    throw Unreadable(view);
+  }
+  CheckSize(view, FreeImage_GetWidth(header.get()),
+            FreeImage_GetHeight(header.get()));
+}
+
+Map<uint8_t> ReadPhoto(const SceneView& view) {
+  colmap::Bitmap bitmap;
+  if (!bitmap.Read(view.image_path, /* as_rgb */ false)) {
+    throw Unreadable(view);
+  }
+  CheckSize(view, bitmap.Width(), bitmap.Height());
+  if (view.width != view.photo_width || view.height != view.photo_height) {
+    bitmap.Rescale(view.width, view.height);
+  }
+  const std::vector<uint8_t> pixels = bitmap.ConvertToRowMajorArray();
+  Map<uint8_t> image(view.width, view.height);
+  std::memcpy(image.data(), pixels.data(), image.size());
+  return image;
+}
+
+}  // namespace tapa

@@ -1,0 +1,46 @@
+#ifndef TAPA_SRC_COLMAP_VIEWS_H_
+#define TAPA_SRC_COLMAP_VIEWS_H_
+
+#include <string>
+#include <vector>
+
+#include "mvs/model.h"
+#include "src/mvs/map.h"
+#include "src/mvs/view.h"
+
+namespace tapa {
+
+// An image of COLMAP's model, as far as stereo needs it.
+struct SceneView {
+  std::string name;
+  std::string image_path;
+  // Size of the photograph, in pixels, by the model's camera.
+  int photo_width = 0;
+  int photo_height = 0;
+  // Size that stereo works at, and the camera at that size.
+  int width = 0;
+  int height = 0;
+  Camera camera;
+  // Range of the depths that the sparse points suggest; not positive: there
+  // are no points.
+  double depth_min = -1;
+  double depth_max = -1;
+};
+
+// The images of the model, in its order. max_image_size: photographs that are
+// wider or higher, in pixels, are scaled down to it; not positive: none.
+std::vector<SceneView> SceneViews(const colmap::mvs::Model& model,
+                                  int max_image_size);
+
+// Throws Failure if the photograph is missing, of an unknown format, or not of
+// the size that its camera has. Does not decode it where the format has a
+// header.
+void CheckPhoto(const SceneView& view);
+
+// Reads the photograph as a grey image of the size that stereo works at.
+// Throws Failure if that is impossible.
+Map<uint8_t> ReadPhoto(const SceneView& view);
+
+}  // namespace tapa
+
+#endif  // TAPA_SRC_COLMAP_VIEWS_H_

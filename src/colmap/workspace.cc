@@ -1,0 +1,100 @@
+#include "src/colmap/workspace.h"
+
+#include "mvs/workspace.h"
+#include "src/colmap/failure.h"
+#include "src/colmap/fatal_errors.h"
+#include "util/misc.h"
+#include "util/string.h"
+
+namespace tapa {
+namespace {
+
+bool IsPmvs(const WorkspaceLocation& location) {
+  std::string format = location.format;
+  colmap::StringToLower(&format);
+  return format == "pmvs";
+}
+
+bool HasModel(const std::string& path, const std::string& extension) {
+  for (const char* name : {"cameras", "images", "points3D"}) {
+    if (!colmap::ExistsFile(colmap::JoinPaths(path, name + extension))) {
+      return false;
+    }
+  }
+  return true;
+}
+
+void CheckColmapWorkspace(const WorkspaceLocation& location) {
+  const std::string sparse_path = colmap::JoinPaths(location.path, "sparse");
+  if (!HasModel(sparse_path, ".bin") && !HasModel(sparse_path, ".txt")) {
+    throw Failure("There is no sparse model (cameras, images and points3D, "
+                  ".bin or .txt) in " + sparse_path +
+                  "; image_undistorter writes one");
+  }
+  if (!colmap::ExistsDir(colmap::JoinPaths(location.path, "images"))) {
+    throw Failure("There is no folder images in " + location.path +
+                  "; image_undistorter makes it");
+  }
+}
+
+void CheckPmvsWorkspace(const WorkspaceLocation& location) {
+  if (!colmap::ExistsFile(
+          colmap::JoinPaths(location.path, "bundle.rd.out")) &&
+      !colmap::ExistsFile(colmap::JoinPaths(location.path, "vis.dat"))) {
+    throw Failure("There is neither bundle.rd.out nor vis.dat in " +
+                  location.path + "; is it a PMVS workspace?");
+  }
+  const std::string option_path =
+      colmap::JoinPaths(location.path, location.pmvs_option_name);
+  if (!colmap::ExistsFile(option_path)) {
+    throw Failure("There is no PMVS option file " + option_path +
+                  "; give its name with --pmvs_option_name");
+  }
+}
+
+}  // namespace
+
+std::string WorkspaceLocation::StereoPath() const {
+  return colmap::JoinPaths(
+      path, IsPmvs(*this) ? "stereo-" + pmvs_option_name : "stereo");
+}
+
+std::string WorkspaceLocation::ConfigPath() const {
+  return config_path.empty() ? colmap::JoinPaths(StereoPath(), "patch-match.cfg")
+                             : config_path;
+}
+
+std::string WorkspaceLocation::MapPath(const std::string& kind,
+                                       const std::string& image_name,
+                                       bool geometric) const {
+  return colmap::JoinPaths(
+      StereoPath(), kind,
+      image_name + (geometric ? ".geometric.bin" : ".photometric.bin"));
+}
+
+colmap::mvs::Model ReadWorkspace(const WorkspaceLocation& location) {
+  if (!colmap::ExistsDir(location.path)) {
+    throw Failure("There is no workspace folder " + location.path +
+                  "; image_undistorter makes one");
+  }
+  const bool is_pmvs = IsPmvs(location);
+  if (is_pmvs) {
+    CheckPmvsWorkspace(location);
+  } else {
+    CheckColmapWorkspace(location);
+  }
+
+  // COLMAP's readers end the program where they find nonsense.
+  const FatalErrors fatal_errors("Cannot read the workspace " + location.path);
+  colmap::mvs::Workspace::Options options;
+  options.workspace_path = location.path;
+  options.workspace_format = location.format;
+  options.stereo_folder = colmap::GetPathBaseName(location.StereoPath());
+  const colmap::mvs::Workspace workspace(options);
+  if (is_pmvs) {
+    colmap::mvs::ImportPMVSWorkspace(workspace, location.pmvs_option_name);
+  }
+  return workspace.GetModel();
+}
+
+}  // namespace tapa

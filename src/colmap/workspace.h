@@ -1,0 +1,36 @@
+#ifndef TAPA_SRC_COLMAP_WORKSPACE_H_
+#define TAPA_SRC_COLMAP_WORKSPACE_H_
+
+#include <string>
+
+#include "mvs/model.h"
+
+namespace tapa {
+
+// Where a dense workspace is and what kind it is.
+struct WorkspaceLocation {
+  std::string path;
+  // "COLMAP" or "PMVS", in any case.
+  std::string format = "COLMAP";
+  // With PMVS: name of the option file.
+  std::string pmvs_option_name = "option-all";
+  // The list of views; empty: patch-match.cfg in the stereo folder.
+  std::string config_path;
+
+  // Folder of the maps.
+  std::string StereoPath() const;
+  std::string ConfigPath() const;
+
+  // kind: depth_maps, normal_maps or consistency_graphs.
+  std::string MapPath(const std::string& kind, const std::string& image_name,
+                      bool geometric) const;
+};
+
+// Reads the sparse model, and makes the stereo folder of a PMVS workspace.
+// Throws Failure if parts of the workspace are missing; ends the program with
+// one line if the model's files are damaged.
+colmap::mvs::Model ReadWorkspace(const WorkspaceLocation& location);
+
+}  // namespace tapa
+
+#endif  // TAPA_SRC_COLMAP_WORKSPACE_H_
