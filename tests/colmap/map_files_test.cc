@@ -1,0 +1,189 @@
+#include "src/colmap/map_files.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <boost/filesystem.hpp>
+#include <fstream>
+
+#include "mvs/consistency_graph.h"
+#include "mvs/depth_map.h"
+#include "mvs/normal_map.h"
+#include "src/colmap/atomic_file.h"
+#include "src/colmap/failure.h"
+#include "tests/colmap/test_folder.h"
+
+namespace tapa {
+namespace {
+
+Map<float> SomeDepths() {
+  Map<float> map(3, 2);
+  for (size_t i = 0; i < map.size(); ++i) {
+    map.data()[i] = 0.5f + i;
+  }
+  return map;
+}
+
+Map<Vec3> SomeNormals() {
+  Map<Vec3> map(3, 2);
+  for (size_t i = 0; i < map.size(); ++i) {
+    map.data()[i] = {1.0f * i, 10.0f + i, -20.0f - i};
+  }
+  return map;
+}
+
+void Truncate(const std::string& path, int bytes) {
+  boost::filesystem::resize_file(path,
+                                 boost::filesystem::file_size(path) - bytes);
+}
+
+TEST(MapFiles, ColmapReadsDepthMap) {
+  const TestFolder folder;
+  WriteDepthMap(folder.Path("a.bin"), SomeDepths());
+  colmap::mvs::DepthMap map;
+  map.Read(folder.Path("a.bin"));
+  ASSERT_EQ(map.GetWidth(), 3);
+  ASSERT_EQ(map.GetHeight(), 2);
+  for (int row = 0; row < 2; ++row) {
+    for (int col = 0; col < 3; ++col) {
+      EXPECT_EQ(map.Get(row, col), SomeDepths().At(row, col));
+    }
+  }
+}
+
+TEST(MapFiles, ColmapReadsNormalMap) {
+  const TestFolder folder;
+  WriteNormalMap(folder.Path("a.bin"), SomeNormals());
+  colmap::mvs::NormalMap map;
+  map.Read(folder.Path("a.bin"));
+  for (int row = 0; row < 2; ++row) {
+    for (int col = 0; col < 3; ++col) {
+      float normal[3];
+      map.GetSlice(row, col, normal);
+      EXPECT_EQ(normal[0], SomeNormals().At(row, col).x);
+      EXPECT_EQ(normal[1], SomeNormals().At(row, col).y);
+      EXPECT_EQ(normal[2], SomeNormals().At(row, col).z);
+    }
+  }
+}
+
+TEST(MapFiles, ReadsWhatColmapWrites) {
+  const TestFolder folder;
+  colmap::mvs::DepthMap depth(3, 2, 0, 10);
+  depth.Set(1, 2, 7.5f);
+  depth.Write(folder.Path("depth.bin"));
+  EXPECT_EQ(ReadDepthMap(folder.Path("depth.bin"), 3, 2).At(1, 2), 7.5f);
+
+  colmap::mvs::NormalMap normal(3, 2);
+  normal.Set(1, 0, 2, -1);
+  normal.Write(folder.Path("normal.bin"));
+  EXPECT_EQ(ReadNormalMap(folder.Path("normal.bin"), 3, 2).At(1, 0).z, -1);
+}
+
+TEST(MapFiles, ColmapReadsGraph) {
+  const TestFolder folder;
+  WriteGraph(folder.Path("a.bin"), 3, 2, {2, 1, 2, 40, 50});
+  EXPECT_EQ(CheckGraphFile(folder.Path("a.bin"), 3, 2), "");
+  colmap::mvs::ConsistencyGraph graph;
+  graph.Read(folder.Path("a.bin"));
+  int num_images = 0;
+  const int* images = nullptr;
+  graph.GetImageIdxs(/* row */ 1, /* col */ 2, &num_images, &images);
+  ASSERT_EQ(num_images, 2);
+  EXPECT_EQ(images[0], 40);
+  EXPECT_EQ(images[1], 50);
+}
+
+TEST(MapFiles, RefusesDamagedFiles) {
+  const TestFolder folder;
+  const std::string path = folder.Path("a.bin");
+  EXPECT_THROW(ReadDepthMap(path, 3, 2), Failure);
+
+  WriteDepthMap(path, SomeDepths());
+  EXPECT_EQ(CheckMapFile(path, 3, 2, 1), "");
+  EXPECT_NE(CheckMapFile(path, 2, 3, 1), "");
+  EXPECT_NE(CheckMapFile(path, 3, 2, 3), "");
+  Truncate(path, 4);
+  EXPECT_NE(CheckMapFile(path, 3, 2, 1), "");
+  EXPECT_THROW(ReadDepthMap(path, 3, 2), Failure);
+
+  WriteDepthMap(path, SomeDepths());
+  std::ofstream(path, std::ios::app) << "x";
+  EXPECT_NE(CheckMapFile(path, 3, 2, 1), "");
+
+  for (const char* text : {"", "3&2&", "nothing of the kind", "3&2&1",
+                           "99999999999999999999999&2&1&"}) {
+    std::ofstream(path, std::ios::trunc) << text;
+    EXPECT_NE(CheckMapFile(path, 3, 2, 1), "") << text;
+  }
+  EXPECT_NE(CheckMapFile(folder.Path(""), 3, 2, 1), "") << "a folder";
+}
+
+TEST(MapFiles, MakesFolders) {
+  const TestFolder folder;
+  WriteDepthMap(folder.Path("x/y/a.bin"), SomeDepths());
+  EXPECT_EQ(CheckMapFile(folder.Path("x/y/a.bin"), 3, 2, 1), "");
+}
+
+TEST(AtomicFile, IsNotThereUntilComplete) {
+  const TestFolder folder;
+  const std::string path = folder.Path("a.bin");
+  {
+    AtomicFile file(path);
+    file.Write("abc", 3);
+    EXPECT_FALSE(boost::filesystem::exists(path));
+  }
+  EXPECT_EQ(folder.NumFiles(), 0) << "nothing is left behind";
+  {
+    AtomicFile file(path);
+    file.Write("abc", 3);
+    file.Commit();
+  }
+  EXPECT_EQ(boost::filesystem::file_size(path), 3);
+  EXPECT_EQ(folder.NumFiles(), 1);
+}
+
+TEST(AtomicFile, KeepsTheOldFileWhenNotCommitted) {
+  const TestFolder folder;
+  const std::string path = folder.Path("a.bin");
+  std::ofstream(path) << "old";
+  { AtomicFile(path).Write("new content", 11); }
+  EXPECT_EQ(boost::filesystem::file_size(path), 3);
+}
+
+TEST(AtomicFile, FailsWhereNothingCanBeWritten) {
+  const TestFolder folder;
+  EXPECT_THROW(AtomicFile(folder.Path("missing/a.bin")), Failure);
+  // The name is taken by a folder.
+  boost::filesystem::create_directories(folder.Path("taken"));
+  AtomicFile file(folder.Path("taken"));
+  EXPECT_THROW(file.Commit(), Failure);
+  EXPECT_EQ(folder.NumFiles(), 0);
+}
+
+TEST(AtomicFile, StaleTemporariesAreRemoved) {
+  const TestFolder folder;
+  char host[256] = "";
+  gethostname(host, sizeof(host) - 1);
+  const std::string mark = std::string(".part-") + host + "-";
+  // Larger than any process number, ours, and one of another machine.
+  std::ofstream(folder.Path("a" + mark + "99999999")) << "x";
+  std::ofstream(folder.Path("b" + mark + std::to_string(getpid()))) << "x";
+  std::ofstream(folder.Path("c.part-elsewhere-99999999")) << "x";
+  std::ofstream(folder.Path("d.bin")) << "x";
+  RemoveStaleTemporaries(folder.Path(""));
+  EXPECT_FALSE(boost::filesystem::exists(folder.Path("a" + mark + "99999999")));
+  EXPECT_EQ(folder.NumFiles(), 3);
+}
+
+TEST(PrepareMapFolder, MakesOrRefuses) {
+  const TestFolder folder;
+  PrepareMapFolder(folder.Path("x/y"));
+  EXPECT_TRUE(boost::filesystem::is_directory(folder.Path("x/y")));
+  EXPECT_TRUE(boost::filesystem::is_empty(folder.Path("x/y")));
+  std::ofstream(folder.Path("file")) << "x";
+  EXPECT_THROW(PrepareMapFolder(folder.Path("file")), Failure);
+}
+
+}  // namespace
+}  // namespace tapa

@@ -1,0 +1,63 @@
+#include "src/colmap/problem_config.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "src/colmap/failure.h"
+#include "tests/colmap/test_folder.h"
+
+namespace tapa {
+namespace {
+
+using Names = std::vector<std::string>;
+
+std::vector<ViewConfig> Parse(const std::string& text) {
+  const TestFolder folder;
+  const std::string path = folder.Path("patch-match.cfg");
+  std::ofstream(path) << text;
+  return ReadProblemConfig(path);
+}
+
+TEST(ReadProblemConfig, ReadsAllKinds) {
+  const auto config = Parse(
+      "# a comment\n"
+      "a b.jpg\r\n"
+      "__all__\r\n"
+      "\n"
+      "  b.jpg\n"
+      "__auto__, 20\n"
+      "c.jpg\n"
+      "# another one\n"
+      "a b.jpg, b.jpg,x/d.jpg\n");
+  ASSERT_EQ(config.size(), 3);
+  EXPECT_EQ(config[0].reference, "a b.jpg");
+  EXPECT_EQ(config[0].sources, ViewConfig::Sources::kAll);
+  EXPECT_EQ(config[1].reference, "b.jpg");
+  EXPECT_EQ(config[1].sources, ViewConfig::Sources::kAuto);
+  EXPECT_EQ(config[1].max_num_sources, 20);
+  EXPECT_EQ(config[2].sources, ViewConfig::Sources::kNamed);
+  EXPECT_EQ(config[2].source_names, (Names{"a b.jpg", "b.jpg", "x/d.jpg"}));
+}
+
+TEST(ReadProblemConfig, RefusesNonsense) {
+  for (const char* text : {
+           "",
+           "# only a comment\n",
+           "a.jpg\n",
+           "a.jpg\n__all__\nb.jpg\n",
+           "a.jpg\n , ,\n",
+           "a.jpg\n__auto__\n",
+           "a.jpg\n__auto__, x\n",
+           "a.jpg\n__auto__, 0\n",
+           "a.jpg\n__auto__, -3\n",
+           "a.jpg\n__auto__, 3, 4\n",
+           "a.jpg\n__auto__, 99999999999\n",
+       }) {
+    EXPECT_THROW(Parse(text), Failure) << text;
+  }
+  EXPECT_THROW(ReadProblemConfig("/nowhere/patch-match.cfg"), Failure);
+}
+
+}  // namespace
+}  // namespace tapa
