@@ -4,7 +4,7 @@
 //   engine_benchmark --benchmark_filter=Correlation
 
 #include <benchmark/benchmark.h>
-#include <sys/resource.h>
+#include <hwy/targets.h>
 
 #include <cmath>
 #include <random>
@@ -83,9 +83,17 @@ void BM_CorrelationNaive(benchmark::State& state) {
         item.warp));
   }
 }
-BENCHMARK(BM_CorrelationNaive)->Arg(3)->Arg(5)->Arg(10);
+BENCHMARK(BM_CorrelationNaive)->ArgName("radius")->Arg(3)->Arg(5)->Arg(10);
 
+// Restricts the engine to one instruction set; 0 allows all.
+void UseInstructionSet(int64_t target) {
+  hwy::SetSupportedTargetsForTest(target);
+  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+}
+
+// range(1): Highway's number of the instruction set.
 void BM_Correlation(benchmark::State& state) {
+  UseInstructionSet(state.range(1));
   const SyntheticPlane scene = MakeScene(640, 480, 4);
   const CorrelationWork work(WindowOptions(state), scene);
   size_t i = 0;
@@ -95,8 +103,16 @@ void BM_Correlation(benchmark::State& state) {
         PhotometricCost(work.data, work.patch, item.warp, item.m));
   }
   state.SetLabel(InstructionSet());
+  UseInstructionSet(0);
 }
-BENCHMARK(BM_Correlation)->Arg(3)->Arg(5)->Arg(10);
+BENCHMARK(BM_Correlation)->Apply([](auto* b) {
+  b->ArgNames({"radius", "target"});
+  for (const int radius : {3, 5, 10}) {
+    for (const int64_t target : hwy::SupportedAndGeneratedTargets()) {
+      b->Args({radius, target});
+    }
+  }
+});
 
 void BM_PreparePatch(benchmark::State& state) {
   const SyntheticPlane scene = MakeScene(640, 480, 1);
@@ -108,7 +124,7 @@ void BM_PreparePatch(benchmark::State& state) {
     benchmark::DoNotOptimize(work.patch.variance);
   }
 }
-BENCHMARK(BM_PreparePatch)->Arg(5);
+BENCHMARK(BM_PreparePatch)->ArgName("radius")->Arg(5);
 
 Options PassOptions(int num_threads) {
   Options options;

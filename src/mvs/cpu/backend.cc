@@ -1,5 +1,6 @@
 #include "src/mvs/backend.h"
 
+#include <algorithm>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -11,8 +12,18 @@
 namespace tapa {
 namespace {
 
-// Lines that a thread takes at a time: neighbouring columns share cache lines.
-constexpr int kLinesPerBlock = 8;
+// Number of lines that a thread takes at a time: eight, for neighbouring
+// columns share cache lines, but fewer where they would take so long that a
+// request to stop had to wait.
+int LinesPerBlock(const ProblemData& data, int line_length) {
+  constexpr double kMaxSamples = 1e8;
+  constexpr double kMaxLines = 8;
+  const double samples_per_line = static_cast<double>(line_length) *
+                                  data.window.num_samples *
+                                  (data.num_sources + 15);
+  return static_cast<int>(
+      std::clamp(kMaxSamples / samples_per_line, 1.0, kMaxLines));
+}
 
 class CpuBackend : public Backend {
  public:
@@ -30,7 +41,7 @@ class CpuBackend : public Backend {
     state_.depth = std::move(depth);
     state_.normal = std::move(normal);
     return team_.For(
-        data_.height, kLinesPerBlock,
+        data_.height, LinesPerBlock(data_, data_.width),
         [&](int thread, int begin, int end) {
           ComputeCosts(data_, begin, end, &state_, scratch_[thread].get());
         },
@@ -39,8 +50,10 @@ class CpuBackend : public Backend {
 
   bool Sweep(const SweepParams& params, const More& more) override {
     const auto direction = static_cast<Direction>(params.index % 4);
+    const int num_lines = NumLines(data_, direction);
+    const int length = num_lines == data_.width ? data_.height : data_.width;
     return team_.For(
-        NumLines(data_, direction), kLinesPerBlock,
+        num_lines, LinesPerBlock(data_, length),
         [&](int thread, int begin, int end) {
           SweepLines(data_, params, direction, begin, end, &state_,
                      scratch_[thread].get());

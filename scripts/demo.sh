@@ -1,0 +1,107 @@
+#!/usr/bin/env bash
+# From photographs to points.
+#
+#   scripts/demo.sh                 the built-in example, with scores
+#   scripts/demo.sh PHOTOS [OUT]    a folder of photographs; the result goes to
+#                                   OUT (PHOTOS-reconstruction beside it)
+#
+# Installs what is missing and builds first. A run that was stopped goes on
+# where it left off. Photographs are scaled down to at most MAX_IMAGE_SIZE (1600)
+# pixels before dense stereo.
+set -euo pipefail
+
+here=$(cd "$(dirname "$0")" && pwd)
+root=$(dirname "$here")
+bin=$root/build/bin
+
+fail() {
+  echo "ERROR: $*" >&2
+  exit 1
+}
+
+run() {
+  echo "\$ ${*/#$root\//}" >&2
+  "$@"
+}
+
+reconstruct_example() {
+  local out=$root/build/demo/room
+  mkdir -p "$out"
+  PICTURES=1 TOLERANCES=0.01,0.02,0.05,0.1 MAX_TEXTURENESS=0.75 \
+    run "$here/evaluate_dataset.sh" "$root/examples/room" "$out"
+  run "$bin/colmap" stereo_fusion --workspace_path "$out" \
+    --output_path "$out/fused.ply"
+  echo
+  echo "Scores:   $out/scores.txt"
+  echo "Pictures: $out/pictures/"
+  echo "Points:   $out/fused.ply"
+}
+
+# Folder of the largest of the models that the mapper made.
+largest_model() {
+  local model best= count most=0
+  for model in "$1"/*/; do
+    count=$("$bin/colmap" model_analyzer --path "$model" 2>&1 |
+      sed -n 's/.*Registered images: *\([0-9]*\).*/\1/p')
+    if [[ ${count:-0} -gt $most ]]; then
+      most=$count
+      best=$model
+    fi
+  done
+  [[ -n $best ]] || return 1
+  echo "$best"
+}
+
+# Camera poses and sparse points, unless a run before has them.
+reconstruct_sparse() {
+  local photos=$1 out=$2 count=$3 matcher=exhaustive_matcher
+  [[ ! -f $out/sparse.done ]] || return 0
+  if [[ $count -gt 200 ]]; then
+    matcher=sequential_matcher
+    echo "More than 200 photographs: each is matched with its neighbours in the order of names only."
+  fi
+  run "$bin/colmap" feature_extractor --database_path "$out/database.db" \
+    --image_path "$photos" --SiftExtraction.use_gpu 0
+  run "$bin/colmap" "$matcher" --database_path "$out/database.db" \
+    --SiftMatching.use_gpu 0
+  rm -rf "$out/sparse"
+  mkdir -p "$out/sparse"
+  run "$bin/colmap" mapper --database_path "$out/database.db" \
+    --image_path "$photos" --output_path "$out/sparse"
+  touch "$out/sparse.done"
+}
+
+reconstruct_photos() {
+  local photos=$1 out=$2 count model
+  [[ -d $photos ]] || fail "there is no folder $photos"
+  count=$(find -L "$photos" -type f -iregex '.*\.\(jpe?g\|png\|tiff?\|bmp\|ppm\)' | wc -l)
+  [[ $count -ge 3 ]] || fail "$photos has $count photographs; at least 3 are needed"
+  mkdir -p "$out"
+  out=$(cd "$out" && pwd)
+
+  reconstruct_sparse "$photos" "$out" "$count"
+  model=$(largest_model "$out/sparse") ||
+    fail "no camera poses could be found; take the photographs with more overlap"
+  if [[ ! -f $out/dense/undistorted.done ]]; then
+    run "$bin/colmap" image_undistorter --image_path "$photos" \
+      --input_path "$model" --output_path "$out/dense" \
+      --max_image_size "${MAX_IMAGE_SIZE:-1600}"
+    touch "$out/dense/undistorted.done"
+  fi
+  run "$bin/colmap" patch_match_stereo --workspace_path "$out/dense"
+  run "$bin/colmap" stereo_fusion --workspace_path "$out/dense" \
+    --output_path "$out/dense/fused.ply"
+  run "$bin/evaluate_depth_maps" --workspace_path "$out/dense" \
+    --pictures "$out/pictures"
+  echo
+  echo "Pictures: $out/pictures/"
+  echo "Points:   $out/dense/fused.ply"
+}
+
+[[ $# -le 2 ]] || fail "usage: $(basename "$0") [PHOTOS [OUT]]"
+"$here/build.sh"
+if [[ $# -eq 0 ]]; then
+  reconstruct_example
+else
+  reconstruct_photos "$1" "${2:-${1%/}-reconstruction}"
+fi
