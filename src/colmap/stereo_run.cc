@@ -40,7 +40,9 @@ StereoRun::StereoRun(const colmap::mvs::PatchMatchOptions& options,
     : options_(options), location_(location) {}
 
 bool StereoRun::Run(const std::function<bool()>& stopped) {
-  Prepare();
+  if (!Prepare(stopped)) {
+    return false;
+  }
 
   double total = 0;
   for (const Pass pass : {Pass::kPhotometric, Pass::kGeometric}) {
@@ -63,7 +65,7 @@ bool StereoRun::Run(const std::function<bool()>& stopped) {
   return true;
 }
 
-void StereoRun::Prepare() {
+bool StereoRun::Prepare(const std::function<bool()>& stopped) {
   CheckOptions(options_);
   std::cout << "Reading workspace " << location_.path << " ..." << std::endl;
   const colmap::mvs::Model model = ReadWorkspace(location_);
@@ -71,7 +73,8 @@ void StereoRun::Prepare() {
   problems_ = ResolveProblems(ReadProblemConfig(location_.ConfigPath()), model,
                               options_.min_triangulation_angle);
   DropMissing();
-  CheckInputs();
+  CheckDepthRanges();
+  CheckMaps();
   PrepareFolders();
   std::cout << "Configuration has " << NumViews() << " views." << std::endl;
 
@@ -84,6 +87,7 @@ void StereoRun::Prepare() {
         return ReadDepthMap(MapPath("depth_maps", view, Pass::kPhotometric),
                             views_[view].width, views_[view].height);
       });
+  return ReadPhotos(stopped);
 }
 
 // Finds images and maps that are missing, and views that have no sources.
@@ -158,10 +162,7 @@ bool StereoRun::DropMissingOnce() {
   return dropped;
 }
 
-// Looks at everything that is going to be read, before hours are spent.
-void StereoRun::CheckInputs() const {
-  std::set<int> used;
-  std::set<int> computed;
+void StereoRun::CheckDepthRanges() const {
   for (const ViewIndices& problem : problems_) {
     const SceneView& view = views_[problem.reference];
     if (options_.depth_min < 0 && !(view.depth_min > 0)) {
@@ -169,26 +170,49 @@ void StereoRun::CheckInputs() const {
                     " to take its range of depths from; set "
                     "--PatchMatchStereo.depth_min and depth_max");
     }
-    used.insert(problem.reference);
-    used.insert(problem.sources.begin(), problem.sources.end());
-    computed.insert(problem.reference);
   }
-  for (const int view : used) {
-    CheckPhoto(views_[view]);
-    const std::string depth_path =
-        MapPath("depth_maps", view, Pass::kPhotometric);
-    if (computed.count(view) > 0) {
-      for (const Pass pass : {Pass::kPhotometric, FinalPass()}) {
-        IsDone(view, pass);
-      }
-    } else if (FinalPass() == Pass::kGeometric) {
-      const std::string error = CheckMapFile(depth_path, views_[view].width,
-                                             views_[view].height, 1);
+}
+
+// Looks at the maps that are there already.
+void StereoRun::CheckMaps() const {
+  for (const ViewIndices& problem : problems_) {
+    IsDone(problem.reference, Pass::kPhotometric);
+    IsDone(problem.reference, FinalPass());
+    if (FinalPass() == Pass::kPhotometric) {
+      continue;
+    }
+    for (const int source : problem.sources) {
+      const std::string path =
+          MapPath("depth_maps", source, Pass::kPhotometric);
+      const std::string error =
+          ExistsPath(path) ? CheckMapFile(path, views_[source].width,
+                                          views_[source].height, 1)
+                           : "";
       if (!error.empty()) {
-        throw Damaged(depth_path, error);
+        throw Damaged(path, error);
       }
     }
   }
+}
+
+// Reads all photographs that are needed, so that a damaged one is found before
+// hours are spent. The cache keeps what fits.
+bool StereoRun::ReadPhotos(const std::function<bool()>& stopped) {
+  std::set<int> needed;
+  for (const ViewIndices& problem : problems_) {
+    if (!IsDone(problem.reference, Pass::kPhotometric) ||
+        !IsDone(problem.reference, FinalPass())) {
+      needed.insert(problem.reference);
+      needed.insert(problem.sources.begin(), problem.sources.end());
+    }
+  }
+  for (const int view : needed) {
+    if (stopped()) {
+      return false;
+    }
+    photos_->Get(view);
+  }
+  return true;
 }
 
 void StereoRun::PrepareFolders() const {

@@ -36,10 +36,13 @@ class StereoRun {
   // One of the two passes over all views.
   enum class Pass { kPhotometric, kGeometric };
 
-  void Prepare();
+  // Returns false if stopped.
+  bool Prepare(const std::function<bool()>& stopped);
   void DropMissing();
   bool DropMissingOnce();
-  void CheckInputs() const;
+  void CheckDepthRanges() const;
+  void CheckMaps() const;
+  bool ReadPhotos(const std::function<bool()>& stopped);
   void PrepareFolders() const;
 
   Pass FinalPass() const;

@@ -3,7 +3,6 @@
 #include <FreeImage.h>
 
 #include <cstring>
-#include <memory>
 
 #include "mvs/image.h"
 #include "src/colmap/failure.h"
@@ -28,19 +27,14 @@ Camera ToCamera(const colmap::mvs::Image& image) {
   return camera;
 }
 
-Failure Unreadable(const SceneView& view) {
-  return Failure("The image " + view.image_path +
-                 " cannot be read; is it there, and is it a whole image file?");
-}
+// Whether the library has said, since this was cleared, that image data end
+// too early. It fills the rest with grey and calls it a success.
+bool is_truncated = false;
 
-void CheckSize(const SceneView& view, int width, int height) {
-  if (width != view.photo_width || height != view.photo_height) {
-    throw Failure(
-        "The image " + view.image_path + " has " + std::to_string(width) +
-        "x" + std::to_string(height) + " pixels, but its camera has " +
-        std::to_string(view.photo_width) + "x" +
-        std::to_string(view.photo_height) +
-        "; make both the same, as image_undistorter does");
+void NoteMessage(FREE_IMAGE_FORMAT, const char* message) {
+  if (std::strstr(message, "Premature end") != nullptr ||
+      std::strstr(message, "Corrupt JPEG data") != nullptr) {
+    is_truncated = true;
   }
 }
 
@@ -70,29 +64,26 @@ std::vector<SceneView> SceneViews(const colmap::mvs::Model& model,
   return views;
 }
 
-void CheckPhoto(const SceneView& view) {
-  const char* path = view.image_path.c_str();
-  const FREE_IMAGE_FORMAT format = FreeImage_GetFileType(path, 0);
-  if (format == FIF_UNKNOWN) {
-    throw Unreadable(view);
-  }
-  const int flags =
-      FreeImage_FIFSupportsNoPixels(format) ? FIF_LOAD_NOPIXELS : 0;
-  const std::unique_ptr<FIBITMAP, decltype(&FreeImage_Unload)> header(
-      FreeImage_Load(format, path, flags), &FreeImage_Unload);
-  if (header == nullptr) {
-    throw Unreadable(view);
-  }
-  CheckSize(view, FreeImage_GetWidth(header.get()),
-            FreeImage_GetHeight(header.get()));
-}
-
 Map<uint8_t> ReadPhoto(const SceneView& view) {
+  is_truncated = false;
+  FreeImage_SetOutputMessage(&NoteMessage);
   colmap::Bitmap bitmap;
-  if (!bitmap.Read(view.image_path, /* as_rgb */ false)) {
-    throw Unreadable(view);
+  const bool is_read = bitmap.Read(view.image_path, /* as_rgb */ false);
+  FreeImage_SetOutputMessage(nullptr);
+  if (!is_read || is_truncated) {
+    throw Failure("The image " + view.image_path +
+                  " cannot be read; is it there, and is it a whole image?");
   }
-  CheckSize(view, bitmap.Width(), bitmap.Height());
+  if (bitmap.Width() != view.photo_width ||
+      bitmap.Height() != view.photo_height) {
+    throw Failure("The image " + view.image_path + " has " +
+                  std::to_string(bitmap.Width()) + "x" +
+                  std::to_string(bitmap.Height()) +
+                  " pixels, but its camera has " +
+                  std::to_string(view.photo_width) + "x" +
+                  std::to_string(view.photo_height) +
+                  "; make both the same, as image_undistorter does");
+  }
   if (view.width != view.photo_width || view.height != view.photo_height) {
     bitmap.Rescale(view.width, view.height);
   }

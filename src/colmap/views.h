@@ -32,13 +32,9 @@ struct SceneView {
 std::vector<SceneView> SceneViews(const colmap::mvs::Model& model,
                                   int max_image_size);
 
-// Throws Failure if the photograph is missing, of an unknown format, or not of
-// the size that its camera has. Does not decode it where the format has a
-// header.
-void CheckPhoto(const SceneView& view);
-
-// Reads the photograph as a grey image of the size that stereo works at.
-// Throws Failure if that is impossible.
+// Reads the photograph as a grey image of the size that stereo works at. Throws
+// Failure if it is missing, damaged, or not of the size that its camera has.
+// Not to be called from two threads at a time.
 Map<uint8_t> ReadPhoto(const SceneView& view);
 
 }  // namespace tapa
