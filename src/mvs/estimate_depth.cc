@@ -64,8 +64,10 @@ void CheckProblem(const Options& options, const Problem& problem) {
 }
 
 // The photometric pass starts from random planes, the geometric one from the
-// given maps, with random planes where these have none.
-void InitializeEstimate(const Options& options, Problem* problem) {
+// given maps, with random planes where these have none. Returns false if
+// stopped.
+bool InitializeEstimate(const Options& options, const Control& control,
+                        Problem* problem) {
   const RefCamera camera = CameraTable(*problem).reference();
   const Map<uint8_t>& image = *problem->reference.image;
   if (!options.geom_consistency) {
@@ -73,6 +75,9 @@ void InitializeEstimate(const Options& options, Problem* problem) {
     problem->normal = Map<Vec3>(image.width(), image.height());
   }
   for (int row = 0; row < image.height(); ++row) {
+    if (control.stopped && control.stopped()) {
+      return false;
+    }
     for (int col = 0; col < image.width(); ++col) {
       const Vec3 ray = camera.Ray(row, col);
       float& depth = problem->depth.At(row, col);
@@ -87,6 +92,7 @@ void InitializeEstimate(const Options& options, Problem* problem) {
       normal = RandomNormal(random, ray);
     }
   }
+  return true;
 }
 
 float CosineOfDegrees(double degrees) {
@@ -149,8 +155,8 @@ std::optional<Estimate> EstimateDepth(const Options& options, Problem problem,
     return !control.stopped || !control.stopped();
   };
 
-  InitializeEstimate(options, &problem);
-  if (!backend->SetEstimate(std::move(problem.depth), std::move(problem.normal),
+  if (!InitializeEstimate(options, control, &problem) ||
+      !backend->SetEstimate(std::move(problem.depth), std::move(problem.normal),
                             more)) {
     return std::nullopt;
   }
