@@ -1,8 +1,8 @@
 """Makes small dense workspaces and runs the built program on them.
 
 The scene is a slanted plane with a random texture, seen by cameras in a row.
-Needs nothing but Python's standard library. The program is named by the
-environment variable COLMAP.
+Needs nothing but Python's standard library. The environment variable COLMAP
+names the program, where it is not build/bin/colmap.
 """
 
 import os
@@ -20,7 +20,8 @@ FOCAL = 100.0
 BASELINE = 0.3  # Between neighbouring cameras, in scene units.
 CELLS_PER_UNIT = 24  # Of the texture.
 
-COLMAP = os.environ["COLMAP"]
+COLMAP = os.environ.get("COLMAP") or os.path.join(
+    os.path.dirname(os.path.abspath(__file__)), "../../build/bin/colmap")
 # One iteration and a small window: enough to tell files apart, and fast.
 FAST = {"num_iterations": 1, "window_radius": 3, "num_samples": 5}
 
