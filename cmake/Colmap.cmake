@@ -4,13 +4,16 @@
 option(TAPA_WITH_GUI "Build COLMAP's graphical user interface" ON)
 
 set(colmap_dir ${CMAKE_BINARY_DIR}/colmap-3.8)
-# COLMAP_SOURCE_DIR may be given in the environment or as -DCOLMAP_SOURCE_DIR;
-# COLMAP's own project() takes that variable's name afterwards.
-set(TAPA_COLMAP_SOURCE_DIR "$ENV{COLMAP_SOURCE_DIR}" CACHE PATH
+# COLMAP_SOURCE_DIR may be given in the environment or as -DCOLMAP_SOURCE_DIR. It
+# is kept under another name, as COLMAP's own project() takes that one.
+set(TAPA_COLMAP_SOURCE_DIR "" CACHE PATH
     "Unpacked source of COLMAP 3.8; empty: Debian's source package")
-if(COLMAP_SOURCE_DIR AND NOT COLMAP_SOURCE_DIR STREQUAL colmap_dir)
-  set_property(CACHE TAPA_COLMAP_SOURCE_DIR PROPERTY VALUE
-    "${COLMAP_SOURCE_DIR}")
+if(DEFINED ENV{COLMAP_SOURCE_DIR})
+  set(source_dir "$ENV{COLMAP_SOURCE_DIR}")
+elseif(COLMAP_SOURCE_DIR AND NOT COLMAP_SOURCE_DIR STREQUAL colmap_dir)
+  set(source_dir "${COLMAP_SOURCE_DIR}")
+else()
+  set(source_dir "${TAPA_COLMAP_SOURCE_DIR}")
 endif()
 
 set(patches_dir ${CMAKE_SOURCE_DIR}/patches/colmap-3.8)
@@ -20,12 +23,13 @@ set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS
   ${CMAKE_SOURCE_DIR}/scripts/prepare_colmap.sh
   ${CMAKE_SOURCE_DIR}/scripts/fetch_colmap.sh)
 execute_process(
-  COMMAND ${CMAKE_COMMAND} -E env COLMAP_SOURCE_DIR=${TAPA_COLMAP_SOURCE_DIR}
+  COMMAND ${CMAKE_COMMAND} -E env COLMAP_SOURCE_DIR=${source_dir}
           ${CMAKE_SOURCE_DIR}/scripts/prepare_colmap.sh ${colmap_dir}
   RESULT_VARIABLE result)
 if(NOT result EQUAL 0)
   message(FATAL_ERROR "The source of COLMAP could not be prepared (see above).")
 endif()
+set_property(CACHE TAPA_COLMAP_SOURCE_DIR PROPERTY VALUE "${source_dir}")
 
 # COLMAP's sources include some headers of ours, as "tapa/...".
 file(CREATE_LINK ${CMAKE_SOURCE_DIR}/src/colmap ${colmap_dir}/src/tapa

@@ -21,7 +21,7 @@ mkdir -p "$1"
 dest=$(cd "$1" && pwd)
 patches=${PATCHES_DIR:-$here/../patches/colmap-3.8}
 # What of COLMAP is needed to build and install it.
-parts=(CMakeLists.txt COPYING.txt cmake doc/COLMAP.desktop doc/colmap.1 lib src)
+parts=(CMakeLists.txt COPYING.txt cmake doc/COLMAP.desktop lib src)
 
 [[ -f $patches/series ]] || fail "There is no patch series in $patches."
 mapfile -t series < <(grep -v -e '^ *#' -e '^ *$' "$patches/series")

@@ -34,7 +34,7 @@ expect() {
 source=$tmp/source
 mkdir -p "$source"/{cmake,doc,lib,src/util} "$tmp/patches"
 echo 'set(COLMAP_VERSION "3.8")' >"$source/CMakeLists.txt"
-touch "$source"/{COPYING.txt,doc/COLMAP.desktop,doc/colmap.1,cmake/x,lib/y}
+touch "$source"/{COPYING.txt,doc/COLMAP.desktop,cmake/x,lib/y}
 printf 'one\ntwo\nthree\n' >"$source/src/a.txt"
 printf 'same\n' >"$source/src/b.txt"
 write_patch() {
