@@ -29,8 +29,8 @@ std::string TemporaryMark() {
 AtomicFile::AtomicFile(const std::string& path)
     : path_(path),
       temporary_path_(path + TemporaryMark() + std::to_string(getpid())) {
-  file_ = open(temporary_path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC,
-               0666);
+  file_ = open(temporary_path_.c_str(),
+               O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (file_ < 0) {
     Fail();
   }
@@ -64,8 +64,7 @@ void AtomicFile::Commit() {
   }
   const int file = file_;
   file_ = -1;
-  if (close(file) != 0 ||
-      rename(temporary_path_.c_str(), path_.c_str()) != 0) {
+  if (close(file) != 0 || rename(temporary_path_.c_str(), path_.c_str()) != 0) {
     const int error = errno;
     unlink(temporary_path_.c_str());
     errno = error;

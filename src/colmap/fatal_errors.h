@@ -1,10 +1,10 @@
 #ifndef TAPA_SRC_COLMAP_FATAL_ERRORS_H_
 #define TAPA_SRC_COLMAP_FATAL_ERRORS_H_
 
+#include <glog/logging.h>
+
 #include <ctime>
 #include <string>
-
-#include <glog/logging.h>
 
 // This header is included by COLMAP's own sources.
 

@@ -99,9 +99,9 @@ void WriteFile(const std::string& path, int width, int height, int channels,
   boost::system::error_code ignored;  // Opening the file fails then.
   boost::filesystem::create_directories(
       boost::filesystem::path(path).parent_path(), ignored);
-  const std::string header =
-      std::to_string(width) + "&" + std::to_string(height) + "&" +
-      std::to_string(channels) + "&";
+  const std::string header = std::to_string(width) + "&" +
+                             std::to_string(height) + "&" +
+                             std::to_string(channels) + "&";
   AtomicFile file(path);
   file.Write(header.data(), header.size());
   file.Write(values, size);

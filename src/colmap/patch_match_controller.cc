@@ -88,8 +88,7 @@ void PatchMatchController::Run() {
       if (interrupt.Signal() != 0) {
         exit_status_ = 128 + interrupt.Signal();
       }
-      std::cout << "Stopped with " << run.NumDone() << " of "
-                << run.NumViews()
+      std::cout << "Stopped with " << run.NumDone() << " of " << run.NumViews()
                 << " views complete; start it again to go on from there."
                 << std::endl;
     }

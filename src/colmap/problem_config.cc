@@ -94,10 +94,9 @@ class SharedPointRanking {
         views.push_back(view);
       }
     }
-    std::stable_sort(views.begin(), views.end(),
-                     [](const auto& a, const auto& b) {
-                       return a.second > b.second;
-                     });
+    std::stable_sort(
+        views.begin(), views.end(),
+        [](const auto& a, const auto& b) { return a.second > b.second; });
     std::vector<int> best;
     for (const auto& view : views) {
       if (static_cast<int>(best.size()) == max_num_sources) {

@@ -55,9 +55,9 @@ std::string Progress::TimeToGo(double done, double seconds) const {
     seconds += pass.seconds;
   }
   const double share = total_ > 0 ? std::min(1.0, done / total_) : 1.0;
-  return Format("%5.1f %%  %s to go", 100 * share,
-                share > 0 ? TimeText(seconds * (1 - share) / share).c_str()
-                          : "?");
+  return Format(
+      "%5.1f %%  %s to go", 100 * share,
+      share > 0 ? TimeText(seconds * (1 - share) / share).c_str() : "?");
 }
 
 void Progress::Update(double share) {
@@ -70,9 +70,12 @@ void Progress::Update(double share) {
   const double done = share * megapixels_;
   const std::string speed =
       done > 0 ? Format(", %.1f s per megapixel", seconds / done) : "";
-  std::cout << "\r\033[K" << TimeToGo(done, seconds) << "  " << where_ << " "
-            << what_ << ": " << Format("%.0f %%", 100 * share) << speed
-            << std::flush;
+  const std::string line = "\r\033[K" + TimeToGo(done, seconds) + "  " +
+                           where_ + " " + what_ + ": " +
+                           Format("%.0f %%", 100 * share) + speed;
+  // To the terminal alone: the graphical interface keeps a log of std::cout.
+  std::fputs(line.c_str(), stdout);
+  std::fflush(stdout);
   line_shown_ = true;
 }
 
@@ -86,16 +89,18 @@ void Progress::EndView() {
   pass.cpu_seconds += cpu_seconds;
   ClearLine();
   std::cout << TimeToGo(0, 0) << "  " << where_ << " " << what_
-            << Format(": %.2f megapixels in %.1f s, %.1f s (CPU %.1f s) per "
-                      "megapixel",
-                      megapixels_, seconds, seconds / megapixels_,
-                      cpu_seconds / megapixels_)
+            << Format(
+                   ": %.2f megapixels in %.1f s, %.1f s (CPU %.1f s) per "
+                   "megapixel",
+                   megapixels_, seconds, seconds / megapixels_,
+                   cpu_seconds / megapixels_)
             << std::endl;
 }
 
 void Progress::ClearLine() {
   if (line_shown_) {
-    std::cout << "\r\033[K" << std::flush;
+    std::fputs("\r\033[K", stdout);
+    std::fflush(stdout);
     line_shown_ = false;
   }
 }

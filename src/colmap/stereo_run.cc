@@ -1,5 +1,7 @@
 #include "src/colmap/stereo_run.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <iostream>
 #include <new>
@@ -27,6 +29,13 @@ Failure Damaged(const std::string& path, const std::string& error) {
   return Failure(path + " " + error +
                  "; remove it to have it computed again, or take the "
                  "max_image_size that it was computed with");
+}
+
+// Bytes that may be kept in memory of what can be read again: as the option
+// says, but not more than half of the machine's memory.
+double CacheBytes(double gigabytes) {
+  const double memory = 1.0 * sysconf(_SC_PHYS_PAGES) * sysconf(_SC_PAGESIZE);
+  return std::min(gigabytes * 1024 * 1024 * 1024, memory / 2);
 }
 
 void PrintWarning(const std::string& text) {
@@ -79,11 +88,11 @@ bool StereoRun::Prepare(const std::function<bool()>& stopped) {
   std::cout << "Configuration has " << NumViews() << " views." << std::endl;
 
   // A depth map takes four times the bytes of its photograph.
-  const double cache_bytes = options_.cache_size * 1024 * 1024 * 1024;
+  const double cache_bytes = CacheBytes(options_.cache_size);
   photos_ = std::make_unique<ViewCache<uint8_t>>(
       cache_bytes / 5, [this](int view) { return ReadPhoto(views_[view]); });
-  depth_maps_ = std::make_unique<ViewCache<float>>(
-      cache_bytes * 4 / 5, [this](int view) {
+  depth_maps_ =
+      std::make_unique<ViewCache<float>>(cache_bytes * 4 / 5, [this](int view) {
         return ReadDepthMap(MapPath("depth_maps", view, Pass::kPhotometric),
                             views_[view].width, views_[view].height);
       });
@@ -122,7 +131,8 @@ bool StereoRun::DropMissingOnce() {
   };
   const auto drop = [&](const std::string& text) {
     if (!options_.allow_missing_files) {
-      throw Failure(text + "; to leave it out, set "
+      throw Failure(text +
+                    "; to leave it out, set "
                     "--PatchMatchStereo.allow_missing_files 1");
     }
     PrintWarning(text + "; it is left out");
@@ -147,8 +157,9 @@ bool StereoRun::DropMissingOnce() {
         }
       }
       if (kept.sources.empty()) {
-        error = "it has no source images (none shares enough points with it, "
-                "or none is named)";
+        error =
+            "it has no source images (none shares enough points with it, "
+            "or none is named)";
       }
     }
     if (error.empty()) {
@@ -184,10 +195,10 @@ void StereoRun::CheckMaps() const {
     for (const int source : problem.sources) {
       const std::string path =
           MapPath("depth_maps", source, Pass::kPhotometric);
-      const std::string error =
-          ExistsPath(path) ? CheckMapFile(path, views_[source].width,
-                                          views_[source].height, 1)
-                           : "";
+      const std::string error = ExistsPath(path)
+                                    ? CheckMapFile(path, views_[source].width,
+                                                   views_[source].height, 1)
+                                    : "";
       if (!error.empty()) {
         throw Damaged(path, error);
       }
@@ -225,8 +236,8 @@ void StereoRun::PrepareFolders() const {
       for (const char* kind :
            {"depth_maps", "normal_maps", "consistency_graphs"}) {
         if (std::string(kind) != "consistency_graphs" || WritesGraph(pass)) {
-          folders.insert(colmap::GetParentDir(
-              MapPath(kind, problem.reference, pass)));
+          folders.insert(
+              colmap::GetParentDir(MapPath(kind, problem.reference, pass)));
         }
       }
     }
@@ -258,9 +269,9 @@ bool StereoRun::IsDone(int view, Pass pass) const {
     if (!ExistsPath(path)) {
       return false;
     }
-    const std::string error =
-        channels == 0 ? CheckGraphFile(path, width, height)
-                      : CheckMapFile(path, width, height, channels);
+    const std::string error = channels == 0
+                                  ? CheckGraphFile(path, width, height)
+                                  : CheckMapFile(path, width, height, channels);
     if (!error.empty()) {
       throw Damaged(path, error);
     }

@@ -76,13 +76,12 @@ Map<uint8_t> ReadPhoto(const SceneView& view) {
   }
   if (bitmap.Width() != view.photo_width ||
       bitmap.Height() != view.photo_height) {
-    throw Failure("The image " + view.image_path + " has " +
-                  std::to_string(bitmap.Width()) + "x" +
-                  std::to_string(bitmap.Height()) +
-                  " pixels, but its camera has " +
-                  std::to_string(view.photo_width) + "x" +
-                  std::to_string(view.photo_height) +
-                  "; make both the same, as image_undistorter does");
+    throw Failure(
+        "The image " + view.image_path + " has " +
+        std::to_string(bitmap.Width()) + "x" + std::to_string(bitmap.Height()) +
+        " pixels, but its camera has " + std::to_string(view.photo_width) +
+        "x" + std::to_string(view.photo_height) +
+        "; make both the same, as image_undistorter does");
   }
   if (view.width != view.photo_width || view.height != view.photo_height) {
     bitmap.Rescale(view.width, view.height);

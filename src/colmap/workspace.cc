@@ -27,9 +27,10 @@ bool HasModel(const std::string& path, const std::string& extension) {
 void CheckColmapWorkspace(const WorkspaceLocation& location) {
   const std::string sparse_path = colmap::JoinPaths(location.path, "sparse");
   if (!HasModel(sparse_path, ".bin") && !HasModel(sparse_path, ".txt")) {
-    throw Failure("There is no sparse model (cameras, images and points3D, "
-                  ".bin or .txt) in " + sparse_path +
-                  "; image_undistorter writes one");
+    throw Failure(
+        "There is no sparse model (cameras, images and points3D, "
+        ".bin or .txt) in " +
+        sparse_path + "; image_undistorter writes one");
   }
   if (!colmap::ExistsDir(colmap::JoinPaths(location.path, "images"))) {
     throw Failure("There is no folder images in " + location.path +
@@ -38,8 +39,7 @@ void CheckColmapWorkspace(const WorkspaceLocation& location) {
 }
 
 void CheckPmvsWorkspace(const WorkspaceLocation& location) {
-  if (!colmap::ExistsFile(
-          colmap::JoinPaths(location.path, "bundle.rd.out")) &&
+  if (!colmap::ExistsFile(colmap::JoinPaths(location.path, "bundle.rd.out")) &&
       !colmap::ExistsFile(colmap::JoinPaths(location.path, "vis.dat"))) {
     throw Failure("There is neither bundle.rd.out nor vis.dat in " +
                   location.path + "; is it a PMVS workspace?");
@@ -60,8 +60,9 @@ std::string WorkspaceLocation::StereoPath() const {
 }
 
 std::string WorkspaceLocation::ConfigPath() const {
-  return config_path.empty() ? colmap::JoinPaths(StereoPath(), "patch-match.cfg")
-                             : config_path;
+  return config_path.empty()
+             ? colmap::JoinPaths(StereoPath(), "patch-match.cfg")
+             : config_path;
 }
 
 std::string WorkspaceLocation::MapPath(const std::string& kind,

@@ -93,8 +93,8 @@ TEST(CheckOptions, GpuIndex) {
   for (const char* list : {"-1", "0", "0,1", "3, 12"}) {
     EXPECT_EQ(error_of(list), "") << list;
   }
-  for (const char* list : {"", "x", "0,", ",0", "-1,0", "-2", "0,,1", "1.5",
-                           "12345678901"}) {
+  for (const char* list :
+       {"", "x", "0,", ",0", "-1,0", "-2", "0,,1", "1.5", "12345678901"}) {
     EXPECT_NE(error_of(list), "") << list;
   }
 }
@@ -116,13 +116,13 @@ TEST(HostOptions, VisitListsEveryOptionOnce) {
   PatchMatchOptions options;
   std::set<std::string> names;
   int num = 0;
-  options.Visit([&](const std::string& name, auto* option,
-                    const std::string& help) {
-    names.insert(name);
-    ++num;
-    EXPECT_NE(option, nullptr);
-    EXPECT_NE(help, "") << name;
-  });
+  options.Visit(
+      [&](const std::string& name, auto* option, const std::string& help) {
+        names.insert(name);
+        ++num;
+        EXPECT_NE(option, nullptr);
+        EXPECT_NE(help, "") << name;
+      });
   EXPECT_EQ(static_cast<int>(names.size()), num);
   EXPECT_EQ(names.count("use_gpu"), 1);
   EXPECT_EQ(names.count("num_threads"), 1);
