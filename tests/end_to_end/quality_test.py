@@ -20,8 +20,9 @@ CASES = {
     "room": {
         "data": "examples/room",
         "bounds": [
-            ("accuracy", "%", 2.0, ">=", 0.90),
-            ("f1", "%", 2.0, ">=", 0.50),
+            ("accuracy", "%", 2.0, ">=", 0.79),
+            ("f1", "%", 2.0, ">=", 0.64),
+            ("median_relative_error", None, None, "<=", 0.0025),
         ],
     },
     "fountain": {
