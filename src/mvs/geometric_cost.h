@@ -7,6 +7,16 @@
 
 namespace tapa {
 
+// Homogeneous coordinates of the point at `depth` on the ray of pixel (col,
+// row) in view m's other camera: depth M (col, row, 1)^T + v, where M and v are
+// A and b, or B and g, of SourceCameras.
+TAPA_INLINE Vec3 TransferPoint(const float* const M[9], const float* const v[3],
+                               int m, float col, float row, float depth) {
+  return {depth * (M[0][m] * col + M[1][m] * row + M[2][m]) + v[0][m],
+          depth * (M[3][m] * col + M[4][m] * row + M[5][m]) + v[1][m],
+          depth * (M[6][m] * col + M[7][m] * row + M[8][m]) + v[2][m]};
+}
+
 // A reference pixel's place in a source image, in pixels of that image;
 // (-1, -1) for points that are not in front of the camera.
 struct Projection {
@@ -16,18 +26,10 @@ struct Projection {
 
 TAPA_INLINE Projection ProjectToSource(const SourceCameras& views, int m,
                                        float row, float col, float depth) {
-  const float x =
-      depth * (views.A[0][m] * col + views.A[1][m] * row + views.A[2][m]) +
-      views.b[0][m];
-  const float y =
-      depth * (views.A[3][m] * col + views.A[4][m] * row + views.A[5][m]) +
-      views.b[1][m];
-  const float z =
-      depth * (views.A[6][m] * col + views.A[7][m] * row + views.A[8][m]) +
-      views.b[2][m];
-  const float inv_z = 1.0f / z;
-  const bool in_front = z > 0.0f;
-  return {in_front ? x * inv_z : -1.0f, in_front ? y * inv_z : -1.0f};
+  const Vec3 p = TransferPoint(views.A, views.b, m, col, row, depth);
+  const float inv_z = 1.0f / p.z;
+  const bool in_front = p.z > 0.0f;
+  return {in_front ? p.x * inv_z : -1.0f, in_front ? p.y * inv_z : -1.0f};
 }
 
 // Forward-backward reprojection error in reference pixels, at most max_cost:
@@ -38,20 +40,11 @@ TAPA_INLINE float ReprojectionError(const SourceCameras& views, int m,
                                     float row, float col,
                                     const Projection& projection,
                                     float source_depth, float max_cost) {
-  const float u = projection.col;
-  const float v = projection.row;
-  const float x =
-      source_depth * (views.B[0][m] * u + views.B[1][m] * v + views.B[2][m]) +
-      views.g[0][m];
-  const float y =
-      source_depth * (views.B[3][m] * u + views.B[4][m] * v + views.B[5][m]) +
-      views.g[1][m];
-  const float z =
-      source_depth * (views.B[6][m] * u + views.B[7][m] * v + views.B[8][m]) +
-      views.g[2][m];
-  const float inv_z = 1.0f / z;
-  const float dx = col - x * inv_z;
-  const float dy = row - y * inv_z;
+  const Vec3 p = TransferPoint(views.B, views.g, m, projection.col,
+                               projection.row, source_depth);
+  const float inv_z = 1.0f / p.z;
+  const float dx = col - p.x * inv_z;
+  const float dy = row - p.y * inv_z;
   const float error = sqrtf(dx * dx + dy * dy);
   // Also false for errors that are not a number.
   const bool valid = (source_depth > 0.0f) & (error < max_cost);
