@@ -6,7 +6,7 @@ set -euo pipefail
 
 packages=(
   # Tools.
-  g++ cmake ninja-build ccache git python3 ca-certificates
+  g++ cmake ninja-build ccache git python3 python3-venv ca-certificates
   # COLMAP.
   libboost-filesystem-dev libboost-graph-dev libboost-program-options-dev
   libboost-system-dev libboost-test-dev libceres-dev libcgal-dev libeigen3-dev
