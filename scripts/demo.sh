@@ -7,12 +7,14 @@
 #
 # Installs what is missing and builds first. A run that was stopped goes on
 # where it left off. Photographs are scaled down to at most MAX_IMAGE_SIZE (1600)
-# pixels before dense stereo.
+# pixels before dense stereo. BUILD_DIR names another folder than build/.
 set -euo pipefail
 
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(dirname "$here")
-bin=$root/build/bin
+build=${BUILD_DIR:-$root/build}
+bin=$build/bin
+export TAPA_BIN_DIR=$bin
 
 fail() {
   echo "ERROR: $*" >&2
@@ -25,7 +27,7 @@ run() {
 }
 
 reconstruct_example() {
-  local out=$root/build/demo/room
+  local out=$build/demo/room
   mkdir -p "$out"
   PICTURES=1 TOLERANCES=0.01,0.02,0.05,0.1 MAX_TEXTURENESS=0.75 \
     run "$here/evaluate_dataset.sh" "$root/examples/room" "$out"
@@ -72,12 +74,19 @@ reconstruct_sparse() {
 }
 
 reconstruct_photos() {
-  local photos=$1 out=$2 count model
-  [[ -d $photos ]] || fail "there is no folder $photos"
-  count=$(find -L "$photos" -type f -iregex '.*\.\(jpe?g\|png\|tiff?\|bmp\|ppm\)' | wc -l)
+  local photos out=${2:-} size=${MAX_IMAGE_SIZE:-1600} list count model
+  [[ -d $1 ]] || fail "there is no folder $1"
+  photos=$(cd "$1" && pwd)
+  list=$(find -L "$photos" -type f -iregex '.*\.\(jpe?g\|png\|tiff?\|bmp\|ppm\)' | LC_ALL=C sort)
+  count=$(grep -c . <<<"$list" || true)
   [[ $count -ge 3 ]] || fail "$photos has $count photographs; at least 3 are needed"
-  mkdir -p "$out"
+  mkdir -p "${out:=$photos-reconstruction}"
   out=$(cd "$out" && pwd)
+  # What was made in OUT must have been made from the same photographs.
+  list+=$'\n'"at most $size pixels"
+  [[ ! -e $out/photographs.txt || $(<"$out/photographs.txt") == "$list" ]] ||
+    fail "$out has a reconstruction of other photographs or another MAX_IMAGE_SIZE; remove it or name another folder"
+  echo "$list" >"$out/photographs.txt"
 
   reconstruct_sparse "$photos" "$out" "$count"
   model=$(largest_model "$out/sparse") ||
@@ -85,10 +94,12 @@ reconstruct_photos() {
   if [[ ! -f $out/dense/undistorted.done ]]; then
     run "$bin/colmap" image_undistorter --image_path "$photos" \
       --input_path "$model" --output_path "$out/dense" \
-      --max_image_size "${MAX_IMAGE_SIZE:-1600}"
+      --max_image_size "$size"
     touch "$out/dense/undistorted.done"
   fi
-  run "$bin/colmap" patch_match_stereo --workspace_path "$out/dense"
+  # A photograph that sees nothing from another angle is left out.
+  run "$bin/colmap" patch_match_stereo --workspace_path "$out/dense" \
+    --PatchMatchStereo.allow_missing_files 1
   run "$bin/colmap" stereo_fusion --workspace_path "$out/dense" \
     --output_path "$out/dense/fused.ply"
   run "$bin/evaluate_depth_maps" --workspace_path "$out/dense" \
@@ -103,5 +114,5 @@ reconstruct_photos() {
 if [[ $# -eq 0 ]]; then
   reconstruct_example
 else
-  reconstruct_photos "$1" "${2:-${1%/}-reconstruction}"
+  reconstruct_photos "$@"
 fi

@@ -29,8 +29,11 @@ done
 data=$(cd "$data" && pwd)
 
 mkdir -p "$workspace"/stereo/{depth_maps,normal_maps,consistency_graphs}
-ln -sfn "$data/images" "$workspace/images"
-ln -sfn "$data/sparse" "$workspace/sparse"
+for part in images sparse; do
+  [[ ! -e $workspace/$part || -L $workspace/$part ]] ||
+    fail "$workspace has a folder $part of its own; name another workspace"
+  ln -sfn "$data/$part" "$workspace/$part"
+done
 mapfile -t names < <(cd "$data/images" && find -L . -type f | sed 's|^\./||' | LC_ALL=C sort | awk "NR % $every == 1 % $every")
 [[ ${#names[@]} -ge 2 ]] || fail "$data/images has fewer than two photographs to use"
 

@@ -1,6 +1,25 @@
 #include "src/colmap/consistency_graph.h"
 
+#include <bitset>
+
 namespace tapa {
+namespace {
+
+// Number of elements of the graph: three and one per view for every pixel with
+// a consistent view.
+size_t GraphSize(const std::vector<uint8_t>& bits, size_t bytes_per_pixel) {
+  size_t size = 0;
+  for (size_t pixel = 0; pixel < bits.size(); pixel += bytes_per_pixel) {
+    size_t num_consistent = 0;
+    for (size_t i = 0; i < bytes_per_pixel; ++i) {
+      num_consistent += std::bitset<8>(bits[pixel + i]).count();
+    }
+    size += num_consistent > 0 ? 3 + num_consistent : 0;
+  }
+  return size;
+}
+
+}  // namespace
 
 std::vector<int32_t> ConsistencyGraph(const Estimate& estimate,
                                       const std::vector<int>& source_indices) {
@@ -11,6 +30,7 @@ std::vector<int32_t> ConsistencyGraph(const Estimate& estimate,
   const size_t num_sources = source_indices.size();
   const size_t bytes_per_pixel = (num_sources + 7) / 8;
   const uint8_t* bits = estimate.consistent.data();
+  graph.reserve(GraphSize(estimate.consistent, bytes_per_pixel));
   for (int row = 0; row < estimate.depth.height(); ++row) {
     for (int col = 0; col < estimate.depth.width(); ++col) {
       const size_t begin = graph.size();

@@ -334,6 +334,9 @@ bool StereoRun::ComputeView(const ViewIndices& problem, Pass pass,
   Problem engine_problem;
   engine_problem.reference = to_view(problem.reference);
   for (const int source : problem.sources) {
+    if (stopped()) {
+      return false;
+    }
     engine_problem.sources.push_back(to_view(source));
     if (geometric) {
       depth_maps.push_back(depth_maps_->Get(source));

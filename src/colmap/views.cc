@@ -32,8 +32,9 @@ Camera ToCamera(const colmap::mvs::Image& image) {
 bool is_truncated = false;
 
 void NoteMessage(FREE_IMAGE_FORMAT, const char* message) {
-  if (std::strstr(message, "Premature end") != nullptr ||
-      std::strstr(message, "Corrupt JPEG data") != nullptr) {
+  // "Premature end of JPEG file", "Corrupt JPEG data: premature end of ...".
+  // Other corrupt data, such as stray bytes between markers, may do no harm.
+  if (std::strstr(message, "remature end") != nullptr) {
     is_truncated = true;
   }
 }

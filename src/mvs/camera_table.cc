@@ -60,8 +60,6 @@ CameraTable::CameraTable(const Problem& problem) {
     std::for_each(g.data(), g.data() + 3, put);
     std::for_each(C.data(), C.data() + 3, put);
     put(m < count_ ? 1 : 0);
-    put(view.image->width());
-    put(view.image->height());
   }
 }
 
@@ -81,8 +79,6 @@ SourceCameras CameraTable::sources() const {
   std::generate_n(views.g, 3, take);
   std::generate_n(views.C, 3, take);
   views.valid = take();
-  views.width = take();
-  views.height = take();
   return views;
 }
 

@@ -19,7 +19,7 @@ class CameraTable {
   SourceCameras sources() const;
 
  private:
-  enum { kNumCoefficients = 9 + 3 + 9 + 3 + 3 + 1 + 2 };
+  enum { kNumCoefficients = 9 + 3 + 9 + 3 + 3 + 1 };
 
   RefCamera reference_;
   int count_;

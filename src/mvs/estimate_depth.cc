@@ -30,6 +30,11 @@ void CheckView(const View& view, const std::string& name, bool needs_depth) {
   if (view.image == nullptr || view.image->empty()) {
     Fail(name + " has no image");
   }
+  // Samples are addressed by 32-bit offsets in bytes, two for every pixel.
+  constexpr double kMaxPixels = 1e9;
+  if ((view.image->width() + 3.0) * (view.image->height() + 2.0) > kMaxPixels) {
+    Fail(name + " has more than a billion pixels; lower max_image_size");
+  }
   if (!(view.camera.fx > 0) || !(view.camera.fy > 0)) {
     Fail(name + " has a focal length that is not positive");
   }
@@ -124,7 +129,7 @@ SweepParams MakeSweepParams(const Options& options, const Problem& problem) {
 }
 
 // Sets what changes from sweep to sweep: random changes shrink by half in every
-// iteration, and trust in the previous selection grows from 0 to 1.
+// iteration, and trust in the previous selection grows linearly from 0.
 void AdvanceSweepParams(const Options& options, int iteration, int sweep,
                         SweepParams* params) {
   params->index = iteration * kSweepsPerIteration + sweep;

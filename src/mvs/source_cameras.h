@@ -29,9 +29,6 @@ struct SourceCameras {
   const float* g[3];
   const float* C[3];
   const float* valid;
-  // Size of each view's image, in pixels.
-  const float* width;
-  const float* height;
 };
 
 // Homogeneous coordinates in a source image of the pixels around a reference

@@ -24,7 +24,6 @@ namespace tapa {
 struct SerialLanes {
   static constexpr int First() { return 0; }
   static constexpr int Step() { return 1; }
-  static TAPA_INLINE float Sum(float value) { return value; }
 };
 
 // Parameters of one sweep.
@@ -55,7 +54,7 @@ struct SweepParams {
   int filter_min_num_consistent = 2;
 };
 
-// Hypotheses of a pixel (DESIGN section 4). The smallest cost wins; of equal
+// Hypotheses of a pixel, see docs/design.md. The smallest cost wins; of equal
 // ones the later.
 enum Hypothesis {
   kCurrent,

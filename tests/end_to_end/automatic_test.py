@@ -16,11 +16,11 @@ class Automatic(tiny.TestCase):
         tiny.make_model(self.path("out", "sparse", "0"), self.names)
         self.dense = self.path("out", "dense", "0")
 
-    def reconstruct(self, quality):
+    def reconstruct(self, quality, options=("--use_gpu", "0"), **arguments):
         return tiny.run([tiny.COLMAP, "automatic_reconstructor",
                          "--image_path", self.path("photos"),
                          "--workspace_path", self.path("out"),
-                         "--use_gpu", "0", "--quality", quality])
+                         "--quality", quality, *options], **arguments)
 
     def test_extreme_quality_fuses_geometric_maps(self):
         result = self.reconstruct("extreme")
@@ -37,6 +37,16 @@ class Automatic(tiny.TestCase):
                       path])
             distance[which] = abs(self.num_points(path) - num_points)
         self.assertLess(10 * distance["geometric"], distance["photometric"])
+
+    def test_does_without_a_display(self):
+        environment = {name: value for name, value in os.environ.items()
+                       if name not in ("DISPLAY", "WAYLAND_DISPLAY",
+                                       "QT_QPA_PLATFORM")}
+        result = self.reconstruct("low", (), env=environment)
+        self.assertEqual(result.returncode, 0, result.stdout)
+        self.assertIn("There is no display", result.stdout)
+        tiny.read_map(tiny.map_path(self.dense, self.names[0],
+                                    which="photometric"))
 
     def num_points(self, path):
         with open(path, "rb") as file:

@@ -258,7 +258,7 @@ TEST(ThreadTeam, CoversEveryIndexOnce) {
     double last = 0;
     EXPECT_TRUE(team.For(
         count, 8,
-        [&](int thread, int begin, int end) {
+        [&](int thread, int begin, int end, const ThreadTeam::GoOn&) {
           EXPECT_GE(thread, 0);
           EXPECT_LT(thread, 3);
           for (int i = begin; i < end; ++i) {
@@ -280,17 +280,36 @@ TEST(ThreadTeam, StopsAndPassesErrorsOn) {
   ThreadTeam team(2);
   std::atomic<int> num_run{0};
   EXPECT_FALSE(team.For(
-      1000, 1, [&](int, int, int) { ++num_run; },
+      1000, 1, [&](int, int, int, const ThreadTeam::GoOn&) { ++num_run; },
       [&](double) { return false; }));
   EXPECT_LE(num_run, 4);
-  EXPECT_THROW(
-      team.For(
-          10, 1, [](int, int, int) { throw std::runtime_error("broken"); },
-          [](double) { return true; }),
-      std::runtime_error);
+  EXPECT_THROW(team.For(
+                   10, 1,
+                   [](int, int, int, const ThreadTeam::GoOn&) {
+                     throw std::runtime_error("broken");
+                   },
+                   [](double) { return true; }),
+               std::runtime_error);
+  EXPECT_THROW(team.For(
+                   10, 1, [](int, int, int, const ThreadTeam::GoOn&) {},
+                   [](double) -> bool { throw std::runtime_error("broken"); }),
+               std::runtime_error);
+  // A block that takes long hears of the stop.
+  std::atomic<bool> stop{false};
+  EXPECT_FALSE(team.For(
+      2, 1,
+      [&](int thread, int, int, const ThreadTeam::GoOn& go_on) {
+        while (go_on()) {
+          if (thread == 0) {
+            stop = true;
+          }
+        }
+      },
+      [&](double) { return !stop.load(); }));
   // The team works on.
   EXPECT_TRUE(team.For(
-      5, 1, [](int, int, int) {}, [](double) { return true; }));
+      5, 1, [](int, int, int, const ThreadTeam::GoOn&) {},
+      [](double) { return true; }));
 }
 
 }  // namespace

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <ostream>
 #include <random>
+#include <string>
 
 #include "src/mvs/camera_table.h"
 #include "src/mvs/cpu/sweep.h"
@@ -161,6 +163,10 @@ SweepParams MakeParams(const Options& options, int index) {
 struct SweepCase {
   bool geometric;
   int index;
+
+  friend void PrintTo(const SweepCase& c, std::ostream* out) {
+    *out << (c.geometric ? "geometric" : "photometric") << " sweep " << c.index;
+  }
 };
 
 class SweepTest : public testing::TestWithParam<SweepCase> {};
@@ -205,11 +211,12 @@ TEST_P(SweepTest, MakesTheChoicesOfTheReference) {
   SweepState actual(data, false);
   actual.depth = depth;
   actual.normal = normal;
-  ComputeCosts(data, 0, data.height, &actual, &scratch);
+  const auto go_on = [] { return true; };
+  ComputeCosts(data, 0, data.height, go_on, &actual, &scratch);
   const std::vector<uint16_t> first_cost = actual.cost;
   const auto direction = static_cast<Direction>(GetParam().index % 4);
   SweepLines(data, MakeParams(options, GetParam().index), direction, 0,
-             NumLines(data, direction), &actual, &scratch);
+             NumLines(data, direction), go_on, &actual, &scratch);
 
   int num_same = 0;
   int num_changed = 0;

@@ -5,14 +5,18 @@
 
 #include <cstddef>
 #include <cstring>
+#include <new>
 
 namespace tapa {
 
 // Array that starts on a SIMD vector's boundary, filled with zeros; T is a
-// number.
+// number. Throws std::bad_alloc.
 template <typename T>
 hwy::AlignedFreeUniquePtr<T[]> MakeAligned(size_t count) {
   auto array = hwy::AllocateAligned<T>(count);
+  if (!array) {
+    throw std::bad_alloc();
+  }
   std::memset(array.get(), 0, count * sizeof(T));
   return array;
 }

@@ -1,6 +1,5 @@
 #include "src/mvs/backend.h"
 
-#include <algorithm>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -12,18 +11,9 @@
 namespace tapa {
 namespace {
 
-// Number of lines that a thread takes at a time: eight, for neighbouring
-// columns share cache lines, but fewer where they would take so long that a
-// request to stop had to wait.
-int LinesPerBlock(const ProblemData& data, int line_length) {
-  constexpr double kMaxSamples = 1e8;
-  constexpr double kMaxLines = 8;
-  const double samples_per_line = static_cast<double>(line_length) *
-                                  data.window.num_samples *
-                                  (data.num_sources + 15);
-  return static_cast<int>(
-      std::clamp(kMaxSamples / samples_per_line, 1.0, kMaxLines));
-}
+// Number of lines that a thread takes at a time: neighbouring columns share
+// cache lines.
+constexpr int kLinesPerBlock = 8;
 
 class CpuBackend : public Backend {
  public:
@@ -41,21 +31,20 @@ class CpuBackend : public Backend {
     state_.depth = std::move(depth);
     state_.normal = std::move(normal);
     return team_.For(
-        data_.height, LinesPerBlock(data_, data_.width),
-        [&](int thread, int begin, int end) {
-          ComputeCosts(data_, begin, end, &state_, scratch_[thread].get());
+        data_.height, kLinesPerBlock,
+        [&](int thread, int begin, int end, const ThreadTeam::GoOn& go_on) {
+          ComputeCosts(data_, begin, end, go_on, &state_,
+                       scratch_[thread].get());
         },
         more);
   }
 
   bool Sweep(const SweepParams& params, const More& more) override {
     const auto direction = static_cast<Direction>(params.index % 4);
-    const int num_lines = NumLines(data_, direction);
-    const int length = num_lines == data_.width ? data_.height : data_.width;
     return team_.For(
-        num_lines, LinesPerBlock(data_, length),
-        [&](int thread, int begin, int end) {
-          SweepLines(data_, params, direction, begin, end, &state_,
+        NumLines(data_, direction), kLinesPerBlock,
+        [&](int thread, int begin, int end, const ThreadTeam::GoOn& go_on) {
+          SweepLines(data_, params, direction, begin, end, go_on, &state_,
                      scratch_[thread].get());
         },
         more);

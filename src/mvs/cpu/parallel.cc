@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <system_error>
 
 namespace tapa {
 
@@ -13,9 +14,9 @@ int EffectiveNumThreads(int num_threads) {
 }
 
 struct ThreadTeam::Loop {
-  int count;
-  int block_size;
-  const std::function<void(int, int, int)>& run;
+  const int count;
+  const int block_size;
+  const std::function<void(int, int, int, const GoOn&)>& run;
   const std::function<bool(double)>& more;
 
   std::mutex mutex;
@@ -23,11 +24,30 @@ struct ThreadTeam::Loop {
   int done = 0;
   bool stopped = false;
   std::exception_ptr error;
+
+  // Both with the mutex held.
+  void Fail() {
+    error = std::current_exception();
+    stopped = true;
+  }
+
+  bool AskForMore() {
+    try {
+      stopped = stopped || !more(static_cast<double>(done) / count);
+    } catch (...) {
+      Fail();
+    }
+    return !stopped;
+  }
 };
 
 ThreadTeam::ThreadTeam(int num_threads) {
   for (int thread = 1; thread < num_threads; ++thread) {
-    threads_.emplace_back(&ThreadTeam::Work, this, thread);
+    try {
+      threads_.emplace_back(&ThreadTeam::Work, this, thread);
+    } catch (const std::system_error&) {
+      break;
+    }
   }
 }
 
@@ -62,32 +82,33 @@ void ThreadTeam::Work(int thread) {
 }
 
 void ThreadTeam::RunBlocks(Loop* loop, int thread) {
+  const GoOn go_on = [loop] {
+    std::lock_guard<std::mutex> lock(loop->mutex);
+    return loop->AskForMore();
+  };
   std::unique_lock<std::mutex> lock(loop->mutex);
   while (!loop->stopped && loop->next < loop->count) {
     const int begin = loop->next;
     const int end = std::min(loop->count, begin + loop->block_size);
     loop->next = end;
     lock.unlock();
-    std::exception_ptr error;
     try {
-      loop->run(thread, begin, end);
+      loop->run(thread, begin, end, go_on);
+      lock.lock();
     } catch (...) {
-      error = std::current_exception();
+      lock.lock();
+      loop->Fail();
     }
-    lock.lock();
-    loop->done += end - begin;
-    if (error) {
-      loop->error = error;
-      loop->stopped = true;
-    } else if (!loop->stopped &&
-               !loop->more(static_cast<double>(loop->done) / loop->count)) {
-      loop->stopped = true;
+    // A block during which the loop was stopped may not be complete.
+    if (!loop->stopped) {
+      loop->done += end - begin;
+      loop->AskForMore();
     }
   }
 }
 
 bool ThreadTeam::For(int count, int block_size,
-                     const std::function<void(int, int, int)>& run,
+                     const std::function<void(int, int, int, const GoOn&)>& run,
                      const std::function<bool(double)>& more) {
   Loop loop{count, block_size, run, more, {}, 0, 0, false, nullptr};
   {

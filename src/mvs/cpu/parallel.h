@@ -16,19 +16,24 @@ int EffectiveNumThreads(int num_threads);
 // Threads that share out ranges of indices. The calling thread is one of them.
 class ThreadTeam {
  public:
+  // Says, to whoever runs a block, whether to go on.
+  using GoOn = std::function<bool()>;
+
+  // Makes do with fewer threads where the system does not give that many.
   explicit ThreadTeam(int num_threads);
   ~ThreadTeam();
 
   int size() const { return static_cast<int>(threads_.size()) + 1; }
 
-  // Calls run(thread, begin, end) for blocks of at most block_size indices that
-  // together cover [0, count), each thread one block at a time, and returns
-  // when all are done. Between blocks it calls more(share done) from one thread
-  // at a time; once that returns false, no further block is started. Returns
-  // whether all blocks ran. An exception in `run` ends the rest and is thrown
-  // here.
+  // Calls run(thread, begin, end, go_on) for blocks of at most block_size
+  // indices that together cover [0, count), each thread one block at a time,
+  // and returns when all are done. After every block, and whenever `run` calls
+  // go_on(), it calls more(share done) from one thread at a time; once that
+  // returns false, no further block is started, and go_on() returns false, upon
+  // which `run` should return. Returns whether all blocks ran. An exception in
+  // `run` or `more` ends the rest and is thrown here.
   bool For(int count, int block_size,
-           const std::function<void(int, int, int)>& run,
+           const std::function<void(int, int, int, const GoOn&)>& run,
            const std::function<bool(double)>& more);
 
  private:

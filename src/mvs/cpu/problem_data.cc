@@ -20,10 +20,9 @@ ProblemData::ProblemData(const Options& options, const Problem& problem)
 }
 
 SweepState::SweepState(const ProblemData& data, bool filter)
-    : depth(data.width, data.height),
-      normal(data.width, data.height),
-      cost(depth.size() * data.num_sources),
-      prob(depth.size() * data.num_sources, EncodeProb(0.5f)),
-      consistent(filter ? depth.size() * ((data.num_sources + 7) / 8) : 0) {}
+    : cost(data.NumPixels() * data.num_sources),
+      prob(data.NumPixels() * data.num_sources, EncodeProb(0.5f)),
+      consistent(filter ? data.NumPixels() * ((data.num_sources + 7) / 8) : 0) {
+}
 
 }  // namespace tapa

@@ -15,6 +15,8 @@ namespace tapa {
 struct ProblemData {
   ProblemData(const Options& options, const Problem& problem);
 
+  size_t NumPixels() const { return static_cast<size_t>(width) * height; }
+
   int width;
   int height;
   int num_sources;
@@ -30,6 +32,7 @@ struct ProblemData {
 // for all views lie side by side, so that vertical and horizontal sweeps read
 // whole cache lines alike.
 struct SweepState {
+  // Leaves the estimate empty: it is set before the first sweep.
   SweepState(const ProblemData& data, bool filter);
 
   Map<float> depth;

@@ -1,5 +1,8 @@
 #include "src/mvs/cpu/sweep.h"
 
+// Vectors whose size is not known to the compiler cannot be kept in structures,
+// as correlation-inl.h does; Arm machines use NEON instead.
+#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "src/mvs/cpu/sweep.cc"
 // Clang-format must not move the next two lines.
@@ -39,6 +42,27 @@ class Sources {
   const ProblemData& data_;
   const Patch& patch_;
   uint8_t* consistent_;
+};
+
+// Asks whether to go on once for a number of pixels that takes some
+// milliseconds, however large the window and the number of views.
+class Pause {
+ public:
+  Pause(const ProblemData& data, const GoOn& go_on) : go_on_(go_on) {
+    constexpr double kSamplesPerPause = 1e7;
+    const double correlations =
+        kNumHypotheses * std::min(15, data.num_sources) + data.num_sources;
+    interval_ = static_cast<int>(std::clamp(
+        kSamplesPerPause / (correlations * data.window.num_samples), 1.0, 1e6));
+  }
+
+  // To be called for every pixel.
+  bool GoOnAfterPixel() { return ++num_pixels_ % interval_ != 0 || go_on_(); }
+
+ private:
+  const GoOn& go_on_;
+  int interval_;
+  int num_pixels_ = 0;
 };
 
 // Pixels of a line in the order of the sweep.
@@ -126,8 +150,9 @@ HWY_ATTR void StorePixel(const PixelScratch& s, size_t pixel,
   }
 }
 
-HWY_ATTR void SweepLine(const ProblemData& data, const SweepParams& params,
-                        const Line& line, SweepState* state,
+// Returns false if told to stop on the way.
+HWY_ATTR bool SweepLine(const ProblemData& data, const SweepParams& params,
+                        const Line& line, Pause* pause, SweepState* state,
                         SweepScratch* scratch) {
   const RefCamera camera = data.cameras.reference();
   const SourceCameras views = data.cameras.sources();
@@ -171,19 +196,29 @@ HWY_ATTR void SweepLine(const ProblemData& data, const SweepParams& params,
     }
     previous = chosen;
     previous_ray = camera.Ray(row, col);
+    if (!pause->GoOnAfterPixel()) {
+      return false;
+    }
   }
+  return true;
 }
 
 void SweepLinesImpl(const ProblemData& data, const SweepParams& params,
-                    Direction direction, int begin, int end, SweepState* state,
-                    SweepScratch* scratch) {
+                    Direction direction, int begin, int end, const GoOn& go_on,
+                    SweepState* state, SweepScratch* scratch) {
+  Pause pause(data, go_on);
   for (int index = begin; index < end; ++index) {
-    SweepLine(data, params, MakeLine(data, direction, index), state, scratch);
+    if (!SweepLine(data, params, MakeLine(data, direction, index), &pause,
+                   state, scratch)) {
+      return;
+    }
   }
 }
 
 HWY_ATTR void ComputeCostsImpl(const ProblemData& data, int begin, int end,
-                               SweepState* state, SweepScratch* scratch) {
+                               const GoOn& go_on, SweepState* state,
+                               SweepScratch* scratch) {
+  Pause pause(data, go_on);
   const RefCamera camera = data.cameras.reference();
   const SourceCameras views = data.cameras.sources();
   for (int row = begin; row < end; ++row) {
@@ -199,6 +234,9 @@ HWY_ATTR void ComputeCostsImpl(const ProblemData& data, int begin, int end,
         cost[m] = EncodeCost(
             CorrelationCost(data.window, scratch->patch, data.sources[m],
                             ComputeWarp(views, m, row, col, h)));
+      }
+      if (!pause.GoOnAfterPixel()) {
+        return;
       }
     }
   }
@@ -264,15 +302,16 @@ SweepScratch::SweepScratch(const ProblemData& data) : patch(data.window) {
 }
 
 void SweepLines(const ProblemData& data, const SweepParams& params,
-                Direction direction, int begin, int end, SweepState* state,
-                SweepScratch* scratch) {
+                Direction direction, int begin, int end, const GoOn& go_on,
+                SweepState* state, SweepScratch* scratch) {
   HWY_DYNAMIC_DISPATCH(SweepLinesImpl)
-  (data, params, direction, begin, end, state, scratch);
+  (data, params, direction, begin, end, go_on, state, scratch);
 }
 
 void ComputeCosts(const ProblemData& data, int begin, int end,
-                  SweepState* state, SweepScratch* scratch) {
-  HWY_DYNAMIC_DISPATCH(ComputeCostsImpl)(data, begin, end, state, scratch);
+                  const GoOn& go_on, SweepState* state, SweepScratch* scratch) {
+  HWY_DYNAMIC_DISPATCH(ComputeCostsImpl)
+  (data, begin, end, go_on, state, scratch);
 }
 
 void PreparePatch(const ProblemData& data, int row, int col, Patch* patch) {

@@ -1,6 +1,7 @@
 #ifndef TAPA_SRC_MVS_CPU_SWEEP_H_
 #define TAPA_SRC_MVS_CPU_SWEEP_H_
 
+#include <functional>
 #include <vector>
 
 #include "src/mvs/cpu/problem_data.h"
@@ -35,15 +36,19 @@ inline int NumLines(const ProblemData& data, Direction direction) {
              : data.height;
 }
 
+// Asked every few milliseconds whether to go on; if not, the functions below
+// return before they are done.
+using GoOn = std::function<bool()>;
+
 // Sweeps along lines [begin, end). Different lines may be swept at the same
 // time.
 void SweepLines(const ProblemData& data, const SweepParams& params,
-                Direction direction, int begin, int end, SweepState* state,
-                SweepScratch* scratch);
+                Direction direction, int begin, int end, const GoOn& go_on,
+                SweepState* state, SweepScratch* scratch);
 
 // Computes the photometric costs of the state's estimates in rows [begin, end).
 void ComputeCosts(const ProblemData& data, int begin, int end,
-                  SweepState* state, SweepScratch* scratch);
+                  const GoOn& go_on, SweepState* state, SweepScratch* scratch);
 
 // The two steps of a photometric cost, for tests and benchmarks: the patch
 // around a reference pixel, and its correlation with source view m.
