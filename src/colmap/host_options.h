@@ -18,7 +18,8 @@ struct HostOptions {
   // Number of threads on the CPU; -1: one per core.
   int num_threads = -1;
 
-  // Key of all random draws, from 0. The same seed gives the same maps.
+  // Key of all random draws, from 0. The same seed gives the same maps on
+  // processors with the same SIMD instructions.
   int seed = 0;
 
   // Calls visit(name, pointer to the member, help) for every option. Members

@@ -235,6 +235,19 @@ def _limit_file_size(limit):
     return apply
 
 
+class Shortage(tiny.TestCase):
+
+    def test_makes_do_with_fewer_threads(self):
+        # The stacks of that many threads do not fit.
+        tiny.make_workspace(self.folder)
+        limit = 3 << 30
+        result = tiny.run(
+            tiny.stereo_command(self.folder, num_threads=1024),
+            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS,
+                                                  (limit, limit)))
+        self.assert_success(result)
+
+
 class CannotWrite(tiny.TestCase):
 
     def setUp(self):

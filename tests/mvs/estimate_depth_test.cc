@@ -5,9 +5,11 @@
 #include <atomic>
 #include <cmath>
 #include <cstring>
+#include <new>
 #include <stdexcept>
 #include <string>
 
+#include "src/mvs/cpu/aligned.h"
 #include "src/mvs/cpu/parallel.h"
 #include "tests/mvs/synthetic.h"
 
@@ -249,6 +251,10 @@ TEST(EstimateDepth, MemoryStaysBelow250BytesPerPixelAt20Sources) {
   const size_t views = problem.reference.image->size() * (21 + 20 * 4);
   EXPECT_LT(EstimateDepthMemory(Options(), problem) + views,
             250 * problem.reference.image->size());
+}
+
+TEST(EstimateDepth, SaysWhenThereIsNoMemory) {
+  EXPECT_THROW(MakeAligned<float>(size_t{1} << 60), std::bad_alloc);
 }
 
 TEST(ThreadTeam, CoversEveryIndexOnce) {
