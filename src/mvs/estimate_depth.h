@@ -8,6 +8,7 @@
 
 #include "src/mvs/map.h"
 #include "src/mvs/options.h"
+#include "src/mvs/uninitialized_vector.h"
 #include "src/mvs/vec3.h"
 #include "src/mvs/view.h"
 
@@ -36,7 +37,7 @@ struct Estimate {
   Map<Vec3> normal;
   // Probability that source view m sees a pixel, 0 to 1, at
   // [pixel * sources + m], in fixed point: value / 65535.
-  std::vector<uint16_t> selection_prob;
+  UninitializedVector<uint16_t> selection_prob;
   // With Options::filter: bit m % 8 of byte [pixel * ceil(sources / 8) + m / 8]
   // says whether source view m supports the estimate.
   std::vector<uint8_t> consistent;

@@ -213,7 +213,7 @@ TEST_P(SweepTest, MakesTheChoicesOfTheReference) {
   actual.normal = normal;
   const auto go_on = [] { return true; };
   ComputeCosts(data, 0, data.height, go_on, &actual, &scratch);
-  const std::vector<uint16_t> first_cost = actual.cost;
+  const auto first_cost = actual.cost;
   const auto direction = static_cast<Direction>(GetParam().index % 4);
   SweepLines(data, MakeParams(options, GetParam().index), direction, 0,
              NumLines(data, direction), go_on, &actual, &scratch);

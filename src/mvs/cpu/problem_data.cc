@@ -1,7 +1,5 @@
 #include "src/mvs/cpu/problem_data.h"
 
-#include "src/mvs/view_selection.h"
-
 namespace tapa {
 
 ProblemData::ProblemData(const Options& options, const Problem& problem)
@@ -21,7 +19,7 @@ ProblemData::ProblemData(const Options& options, const Problem& problem)
 
 SweepState::SweepState(const ProblemData& data, bool filter)
     : cost(data.NumPixels() * data.num_sources),
-      prob(data.NumPixels() * data.num_sources, EncodeProb(0.5f)),
+      prob(data.NumPixels() * data.num_sources),
       consistent(filter ? data.NumPixels() * ((data.num_sources + 7) / 8) : 0) {
 }
 

@@ -7,6 +7,7 @@
 #include "src/mvs/cpu/source_image.h"
 #include "src/mvs/cpu/window.h"
 #include "src/mvs/estimate_depth.h"
+#include "src/mvs/uninitialized_vector.h"
 
 namespace tapa {
 
@@ -32,15 +33,16 @@ struct ProblemData {
 // for all views lie side by side, so that vertical and horizontal sweeps read
 // whole cache lines alike.
 struct SweepState {
-  // Leaves the estimate empty: it is set before the first sweep.
+  // Leaves the estimate empty, and costs and probabilities undefined until
+  // ComputeCosts.
   SweepState(const ProblemData& data, bool filter);
 
   Map<float> depth;
   Map<Vec3> normal;
   // Photometric cost and selection probability at [pixel * sources + m], in the
   // fixed point of view_selection.h.
-  std::vector<uint16_t> cost;
-  std::vector<uint16_t> prob;
+  UninitializedVector<uint16_t> cost;
+  UninitializedVector<uint16_t> prob;
   // As in Estimate::consistent.
   std::vector<uint8_t> consistent;
 };

@@ -1,5 +1,8 @@
 #include "src/mvs/cpu/sweep.h"
 
+#include <algorithm>
+#include <cstring>
+
 // Vectors whose size is not known to the compiler cannot be kept in structures,
 // as correlation-inl.h does; Arm machines use NEON instead.
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
@@ -227,9 +230,10 @@ HWY_ATTR void ComputeCostsImpl(const ProblemData& data, int begin, int end,
                            state->normal.At(row, col)};
       const Vec3 h = HomographyVector(camera, plane, camera.Ray(row, col));
       LoadPatch(data.window, data.reference, row, col, &scratch->patch);
-      uint16_t* cost =
-          state->cost.data() +
+      const size_t first =
           (static_cast<size_t>(row) * data.width + col) * views.count;
+      uint16_t* cost = state->cost.data() + first;
+      std::fill_n(state->prob.data() + first, views.count, EncodeProb(0.5f));
       for (int m = 0; m < views.count; ++m) {
         cost[m] = EncodeCost(
             CorrelationCost(data.window, scratch->patch, data.sources[m],

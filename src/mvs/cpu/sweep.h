@@ -46,7 +46,8 @@ void SweepLines(const ProblemData& data, const SweepParams& params,
                 Direction direction, int begin, int end, const GoOn& go_on,
                 SweepState* state, SweepScratch* scratch);
 
-// Computes the photometric costs of the state's estimates in rows [begin, end).
+// Computes the photometric costs of the state's estimates in rows [begin, end)
+// and sets their selection probabilities to one half.
 void ComputeCosts(const ProblemData& data, int begin, int end,
                   const GoOn& go_on, SweepState* state, SweepScratch* scratch);
 
