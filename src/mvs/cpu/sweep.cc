@@ -53,8 +53,9 @@ class Pause {
  public:
   Pause(const ProblemData& data, const GoOn& go_on) : go_on_(go_on) {
     constexpr double kSamplesPerPause = 1e7;
+    // At most: every hypothesis in every view.
     const double correlations =
-        kNumHypotheses * std::min(15, data.num_sources) + data.num_sources;
+        static_cast<double>(kNumHypotheses) * data.num_sources;
     interval_ = static_cast<int>(std::clamp(
         kSamplesPerPause / (correlations * data.window.num_samples), 1.0, 1e6));
   }
