@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "src/mvs/estimate_depth.h"
+#include "src/mvs/plane_set.h"
 #include "src/mvs/sweep.h"
 
 namespace tapa {
@@ -27,6 +28,18 @@ class Backend {
 
   // One sweep; params.index % 4 is its direction: down, left, up, right.
   virtual bool Sweep(const SweepParams& params, const More& more) = 0;
+
+  // Weighs costs by the textureness of every pixel from now on, see
+  // texture_weights.h.
+  virtual void SetTextureness(Map<float> textureness) = 0;
+
+  // Gives sweeps further hypotheses, until the next call.
+  virtual void SetPlanes(PlaneSet fine, PlaneSet coarse) = 0;
+
+  // The estimate as it is between two sweeps. Valid until the next call of
+  // another function.
+  virtual const Map<float>& Depth() = 0;
+  virtual const Map<Vec3>& Normal() = 0;
 
   // Moves the result out; the backend cannot be used any more.
   virtual Estimate TakeResult() = 0;

@@ -8,6 +8,7 @@
 
 #include "src/mvs/backend.h"
 #include "src/mvs/camera_table.h"
+#include "src/mvs/tapa/stages.h"
 
 namespace tapa {
 namespace {
@@ -137,8 +138,8 @@ void AdvanceSweepParams(const Options& options, int iteration, int sweep,
       std::pow(2.0, -(iteration + sweep / double{kSweepsPerIteration})));
   const int num_sweeps = options.num_iterations * kSweepsPerIteration;
   params->prev_prob_weight = static_cast<float>(params->index) / num_sweeps;
-  params->filter =
-      options.filter && params->index + 1 == static_cast<uint32_t>(num_sweeps);
+  params->filter = options.filter && !options.tapa.enabled &&
+                   params->index + 1 == static_cast<uint32_t>(num_sweeps);
 }
 
 }  // namespace
@@ -166,6 +167,12 @@ std::optional<Estimate> EstimateDepth(const Options& options, Problem problem,
     return std::nullopt;
   }
 
+  std::unique_ptr<TapaStages> tapa;
+  if (options.tapa.enabled) {
+    tapa = std::make_unique<TapaStages>(options, problem);
+    tapa->Begin(backend.get());
+  }
+
   SweepParams params = MakeSweepParams(options, problem);
   for (int iteration = 0; iteration < options.num_iterations; ++iteration) {
     for (int sweep = 0; sweep < kSweepsPerIteration; ++sweep) {
@@ -175,8 +182,18 @@ std::optional<Estimate> EstimateDepth(const Options& options, Problem problem,
         return std::nullopt;
       }
     }
+    if (tapa && iteration + 1 < options.num_iterations) {
+      tapa->ProposePlanes(iteration + 1, backend.get());
+    }
   }
-  return backend->TakeResult();
+  Estimate estimate = backend->TakeResult();
+  if (tapa) {
+    tapa->Refine(&estimate);
+    if (control.record != nullptr) {
+      *control.record = tapa->TakeRecord();
+    }
+  }
+  return estimate;
 }
 
 size_t EstimateDepthMemory(const Options& options, const Problem& problem) {

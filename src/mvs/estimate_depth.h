@@ -22,6 +22,9 @@ struct Problem {
   // Range of the first random depths, in scene units: 0 < min <= max.
   float depth_min = 0;
   float depth_max = 0;
+  // The reference photograph in colour, of the same size as its grey image,
+  // for TAPA's superpixels; not there: they see the grey image. Borrowed.
+  const Map<Rgb>* reference_color = nullptr;
   // Where the geometric pass starts: depth in scene units and unit normals in
   // the reference camera's frame, both of the reference image's size. Pixels
   // whose depth is not positive or whose normal faces away from the camera
@@ -41,7 +44,11 @@ struct Estimate {
   // With Options::filter: bit m % 8 of byte [pixel * ceil(sources / 8) + m / 8]
   // says whether source view m supports the estimate.
   std::vector<uint8_t> consistent;
+  // With TAPA: the hypothesis (sweep.h) that each pixel chose last.
+  Map<uint8_t> chosen;
 };
+
+struct TapaRecord;
 
 // How a caller follows and ends a running estimation. Both are called often,
 // from the calling thread or another one, never from two at a time.
@@ -50,6 +57,8 @@ struct Control {
   std::function<void(double)> progress;
   // Returns true to end the estimation within a fraction of a second.
   std::function<bool()> stopped;
+  // Filled with what TAPA did, if it runs.
+  TapaRecord* record = nullptr;
 };
 
 // Estimates depth and normal of every pixel of the reference view. Returns

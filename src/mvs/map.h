@@ -2,6 +2,7 @@
 #define TAPA_SRC_MVS_MAP_H_
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace tapa {
@@ -37,6 +38,13 @@ class Map {
   int width_ = 0;
   int height_ = 0;
   std::vector<T> data_;
+};
+
+// Colour of a pixel, 0 to 255.
+struct Rgb {
+  uint8_t r = 0;
+  uint8_t g = 0;
+  uint8_t b = 0;
 };
 
 }  // namespace tapa

@@ -6,6 +6,50 @@
 
 namespace tapa {
 
+// Parameters of TAPA: Romanoni and Matteucci, "TAPA-MVS: Textureless-Aware
+// PAtchMatch Multi-View Stereo", ICCV 2019. The defaults are the paper's where
+// it gives a value.
+struct TapaOptions {
+  // Whether TAPA runs at all. The parts below do nothing without it.
+  bool enabled = false;
+
+  // Weigh costs by textureness (section 4.2).
+  bool texture_weighting = true;
+  // Hypotheses from planes fitted to superpixels, fine and coarse ones
+  // (section 4.1).
+  bool fine_superpixels = true;
+  bool coarse_superpixels = true;
+  // Remove speckles and fill gaps (section 5) instead of COLMAP's filter.
+  bool refinement = true;
+
+  // Variance of intensities (0 to 1) that counts as little texture.
+  double textureness_variance = 0.00005;
+  // Textureness of a flat patch, above 0 and at most 1.
+  double min_textureness = 0.5;
+  // By how much textureness changes the weights: w+ = 1 - range (1 - t),
+  // w- = 1 - range t. 0 to 1.
+  double weight_range = 0.2;
+
+  // Number of superpixels: image width / divisor.
+  double fine_divisor = 20;
+  double coarse_divisor = 30;
+  // Largest distance of a point from its superpixel's plane, in scene units;
+  // not positive: relative_plane_distance decides.
+  double plane_distance = -1;
+  // The same as a share of the superpixel's median depth.
+  double relative_plane_distance = 0.01;
+
+  // Connected regions of at most this share of the image are speckles.
+  double speckle_size = 0.0002;
+  // Neighbouring pixels are connected if their depths differ by at most this
+  // share of the scene's size, depth_max - depth_min.
+  double speckle_continuity = 0.1;
+  // Half size of the window that a missing pixel is filled from, in pixels.
+  int fill_radius = 5;
+  // How often the fill is repeated: it reaches fill_radius pixels each time.
+  int fill_rounds = 1;
+};
+
 // Parameters of one depth map estimation. The defaults are COLMAP's
 // (Schoenberger et al., "Pixelwise View Selection for Unstructured Multi-View
 // Stereo", ECCV 2016). Angles are in degrees.
@@ -53,6 +97,8 @@ struct Options {
   // Number of views that have to support an estimate; at most the number of
   // source views is asked for.
   int filter_min_num_consistent = 2;
+
+  TapaOptions tapa;
 
   // Number of threads of the CPU backend; -1: one per core.
   int num_threads = -1;

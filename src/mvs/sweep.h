@@ -5,6 +5,7 @@
 #include "src/mvs/hypotheses.h"
 #include "src/mvs/plane.h"
 #include "src/mvs/source_cameras.h"
+#include "src/mvs/texture_weights.h"
 #include "src/mvs/view_prior.h"
 #include "src/mvs/view_selection.h"
 
@@ -62,8 +63,40 @@ enum Hypothesis {
   kRandom,
   kRandomNormal,
   kRandomDepth,
+  // From outside the sweep: planes of a fine and a coarse superpixel.
+  kFinePlane,
+  kCoarsePlane,
   kNumHypotheses
 };
+
+// What a pixel brings to the sweep from outside.
+struct PixelGuide {
+  TextureWeights weights;
+  // Further hypotheses; depth 0: none.
+  Plane fine;
+  Plane coarse;
+};
+
+// The new estimate of a pixel.
+struct Choice {
+  Plane plane;
+  Hypothesis hypothesis;
+  // Whether it passed the filter, if that is on.
+  bool keep;
+};
+
+// Distinct depths among the hypotheses: current, propagated, random, and those
+// of the planes.
+constexpr int kNumDepths = 5;
+
+// Which of them a hypothesis has.
+TAPA_INLINE int DepthIndex(int hypothesis) {
+  return hypothesis == kPropagated                             ? 1
+         : hypothesis == kRandom || hypothesis == kRandomDepth ? 2
+         : hypothesis == kFinePlane                            ? 3
+         : hypothesis == kCoarsePlane                          ? 4
+                                                               : 0;
+}
 
 // Working memory for one pixel: arrays over the views, padded as in
 // SourceCameras.
@@ -87,18 +120,11 @@ struct PixelScratch {
 
   // Photometric costs of the hypotheses where computed, otherwise negative.
   float* hypothesis_cost[kNumHypotheses];
-  // Geometric costs of the current, the propagated and the random depth.
-  float* geom_cost[3];
+  // Geometric costs of the distinct depths.
+  float* geom_cost[kNumDepths];
   Projection* projection;
   float* source_depth;
 };
-
-// Which of the three depths a hypothesis has.
-TAPA_INLINE int DepthIndex(int hypothesis) {
-  return hypothesis == kPropagated                             ? 1
-         : hypothesis == kRandom || hypothesis == kRandomDepth ? 2
-                                                               : 0;
-}
 
 // Probability of drawing each view: visible, with a good angle to measure the
 // surface, and at a similar resolution. Leaves the cumulative distribution.
@@ -191,6 +217,11 @@ TAPA_INLINE void ComputeGeometricCosts(const SweepParams& params,
   }
 }
 
+// Whether a hypothesis can be true: in front of the camera, and facing it.
+TAPA_INLINE bool IsVisible(const Plane& plane, const Vec3& ray) {
+  return plane.depth > 0.0f && Dot(plane.normal, ray) < 0.0f;
+}
+
 // Summed cost of hypothesis i over the drawn views. Costs are not negative, so
 // the sum only grows: once it exceeds `limit` the hypothesis cannot win any
 // more, and the rest of its views need not be measured.
@@ -198,14 +229,15 @@ template <class Sources>
 TAPA_INLINE float SumCost(const SweepParams& params, const RefCamera& camera,
                           const SourceCameras& views, Sources& sources,
                           float row, float col, const Plane& plane,
-                          const Vec3& ray, int i, float limit,
-                          PixelScratch* s) {
+                          const Vec3& ray, int i, const CostWeights& weights,
+                          float limit, PixelScratch* s) {
   float sum = 0.0f;
   if (params.geometric) {
     const float* geom = s->geom_cost[DepthIndex(i)];
+    const float geom_weight = weights.geometric * params.geom_weight;
     for (int k = 0; k < s->num_distinct; ++k) {
       const int m = s->drawn[k];
-      sum += s->num_drawn[m] * params.geom_weight * geom[m];
+      sum += s->num_drawn[m] * geom_weight * geom[m];
     }
   }
   const Vec3 h = HomographyVector(camera, plane, ray);
@@ -214,7 +246,7 @@ TAPA_INLINE float SumCost(const SweepParams& params, const RefCamera& camera,
     const float cost = DecodeCost(
         EncodeCost(sources.Cost(m, ComputeWarp(views, m, row, col, h))));
     s->hypothesis_cost[i][m] = cost;
-    sum += s->num_drawn[m] * cost;
+    sum += s->num_drawn[m] * weights.photometric * cost;
   }
   return sum;
 }
@@ -245,15 +277,15 @@ TAPA_INLINE int FindConsistentViews(const SweepParams& params,
 
 // Chooses among the hypotheses of the pixel and updates its costs, messages and
 // selection probabilities. `previous` is the estimate of the pixel before on
-// the sweep's line, with its ray. Returns the new estimate before filtering;
-// *keep says whether it passed the filter.
+// the sweep's line, with its ray. The choice is that before filtering.
 template <class Lanes, class Sources>
-TAPA_INLINE Plane SweepPixel(const SweepParams& params, const RefCamera& camera,
-                             const SourceCameras& views, Sources& sources,
-                             int row, int col, uint64_t pixel,
-                             const Plane& current, const Plane& previous,
-                             const Vec3& previous_ray, PixelScratch* s,
-                             bool* keep) {
+TAPA_INLINE Choice SweepPixel(const SweepParams& params,
+                              const RefCamera& camera,
+                              const SourceCameras& views, Sources& sources,
+                              int row, int col, uint64_t pixel,
+                              const Plane& current, const Plane& previous,
+                              const Vec3& previous_ray, const PixelGuide& guide,
+                              PixelScratch* s) {
   const Random random(params.seed, pixel, params.index);
   const Vec3 ray = camera.Ray(row, col);
   ComputeSamplingDistribution<Lanes>(params, camera, views, row, col, current,
@@ -269,37 +301,43 @@ TAPA_INLINE Plane SweepPixel(const SweepParams& params, const RefCamera& camera,
       {PropagateDepth(previous, previous_ray, ray), previous.normal},
       {random_depth, random_normal},
       {current.depth, random_normal},
-      {random_depth, current.normal}};
+      {random_depth, current.normal},
+      guide.fine,
+      guide.coarse};
 
   if (params.geometric) {
-    const float depths[3] = {current.depth, planes[kPropagated].depth,
-                             random_depth};
-    for (int i = 0; i < 3; ++i) {
-      ComputeGeometricCosts<Lanes>(params, views, sources, row, col, depths[i],
-                                   s, s->geom_cost[i]);
+    constexpr Hypothesis kDepths[kNumDepths] = {kCurrent, kPropagated, kRandom,
+                                                kFinePlane, kCoarsePlane};
+    for (int i = 0; i < kNumDepths; ++i) {
+      const float depth = planes[kDepths[i]].depth;
+      if (depth > 0.0f) {
+        ComputeGeometricCosts<Lanes>(params, views, sources, row, col, depth, s,
+                                     s->geom_cost[i]);
+      }
     }
   }
 
   int best = kCurrent;
   float best_cost = 0.0f;
+  const CostWeights& own = guide.weights.own;
   for (int k = 0; k < s->num_distinct; ++k) {
     const int m = s->drawn[k];
-    best_cost += s->num_drawn[m] * s->cost[m];
+    best_cost += s->num_drawn[m] * own.photometric * s->cost[m];
     if (params.geometric) {
-      best_cost += s->num_drawn[m] * params.geom_weight * s->geom_cost[0][m];
+      best_cost += s->num_drawn[m] * own.geometric * params.geom_weight *
+                   s->geom_cost[0][m];
     }
   }
   for (int i = kCurrent + 1; i < kNumHypotheses; ++i) {
-    // Behind the camera, or a plane that the camera does not see from the
-    // front.
-    if (!(planes[i].depth > 0.0f) || !(Dot(planes[i].normal, ray) < 0.0f)) {
+    if (!IsVisible(planes[i], ray)) {
       continue;
     }
     for (int m = Lanes::First(); m < views.count; m += Lanes::Step()) {
       s->hypothesis_cost[i][m] = -1.0f;
     }
+    const CostWeights& weights = i < kFinePlane ? own : guide.weights.planar;
     const float cost = SumCost(params, camera, views, sources, row, col,
-                               planes[i], ray, i, best_cost, s);
+                               planes[i], ray, i, weights, best_cost, s);
     if (cost <= best_cost) {
       best = i;
       best_cost = cost;
@@ -326,13 +364,13 @@ TAPA_INLINE Plane SweepPixel(const SweepParams& params, const RefCamera& camera,
     s->forward[m] = forward;
   }
 
-  *keep = true;
+  bool keep = true;
   if (params.filter) {
-    *keep = FindConsistentViews<Lanes>(
-                params, views, chosen, ray, s->geom_cost[DepthIndex(best)], s,
-                &sources) >= params.filter_min_num_consistent;
+    keep = FindConsistentViews<Lanes>(
+               params, views, chosen, ray, s->geom_cost[DepthIndex(best)], s,
+               &sources) >= params.filter_min_num_consistent;
   }
-  return chosen;
+  return {chosen, static_cast<Hypothesis>(best), keep};
 }
 
 }  // namespace tapa

@@ -215,8 +215,8 @@ TEST_P(SweepTest, MakesTheChoicesOfTheReference) {
   ComputeCosts(data, 0, data.height, go_on, &actual, &scratch);
   const auto first_cost = actual.cost;
   const auto direction = static_cast<Direction>(GetParam().index % 4);
-  SweepLines(data, MakeParams(options, GetParam().index), direction, 0,
-             NumLines(data, direction), go_on, &actual, &scratch);
+  SweepLines(data, MakeParams(options, GetParam().index), SweepGuide(),
+             direction, 0, NumLines(data, direction), go_on, &actual, &scratch);
 
   int num_same = 0;
   int num_changed = 0;

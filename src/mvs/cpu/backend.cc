@@ -21,6 +21,12 @@ class CpuBackend : public Backend {
       : data_(options, problem),
         state_(data_, options.filter),
         team_(EffectiveNumThreads(options.num_threads)) {
+    if (options.tapa.enabled) {
+      state_.chosen = Map<uint8_t>(data_.width, data_.height);
+    }
+    guide_.weight_range = static_cast<float>(options.tapa.weight_range);
+    guide_.depth_min = problem.depth_min;
+    guide_.depth_max = problem.depth_max;
     for (int i = 0; i < team_.size(); ++i) {
       scratch_.push_back(std::make_unique<SweepScratch>(data_));
     }
@@ -44,20 +50,34 @@ class CpuBackend : public Backend {
     return team_.For(
         NumLines(data_, direction), kLinesPerBlock,
         [&](int thread, int begin, int end, const ThreadTeam::GoOn& go_on) {
-          SweepLines(data_, params, direction, begin, end, go_on, &state_,
-                     scratch_[thread].get());
+          SweepLines(data_, params, guide_, direction, begin, end, go_on,
+                     &state_, scratch_[thread].get());
         },
         more);
   }
 
+  void SetTextureness(Map<float> textureness) override {
+    guide_.textureness = std::move(textureness);
+  }
+
+  void SetPlanes(PlaneSet fine, PlaneSet coarse) override {
+    guide_.fine = std::move(fine);
+    guide_.coarse = std::move(coarse);
+  }
+
+  const Map<float>& Depth() override { return state_.depth; }
+  const Map<Vec3>& Normal() override { return state_.normal; }
+
   Estimate TakeResult() override {
     return {std::move(state_.depth), std::move(state_.normal),
-            std::move(state_.prob), std::move(state_.consistent)};
+            std::move(state_.prob), std::move(state_.consistent),
+            std::move(state_.chosen)};
   }
 
  private:
   ProblemData data_;
   SweepState state_;
+  SweepGuide guide_;
   ThreadTeam team_;
   std::vector<std::unique_ptr<SweepScratch>> scratch_;
 };

@@ -7,6 +7,7 @@
 #include "src/mvs/cpu/source_image.h"
 #include "src/mvs/cpu/window.h"
 #include "src/mvs/estimate_depth.h"
+#include "src/mvs/plane_set.h"
 #include "src/mvs/uninitialized_vector.h"
 
 namespace tapa {
@@ -45,6 +46,20 @@ struct SweepState {
   UninitializedVector<uint16_t> prob;
   // As in Estimate::consistent.
   std::vector<uint8_t> consistent;
+  // The hypothesis that each pixel chose last; empty: not kept.
+  Map<uint8_t> chosen;
+};
+
+// What comes to sweeps from outside and changes between them.
+struct SweepGuide {
+  // Textureness of every pixel; empty: costs are not weighted.
+  Map<float> textureness;
+  float weight_range = 0;
+  // Planes outside this range of depths are no hypotheses, in scene units.
+  float depth_min = 0;
+  float depth_max = 0;
+  PlaneSet fine;
+  PlaneSet coarse;
 };
 
 }  // namespace tapa

@@ -154,10 +154,34 @@ HWY_ATTR void StorePixel(const PixelScratch& s, size_t pixel,
   }
 }
 
+// The plane that a pixel may try, if any.
+TAPA_INLINE Plane FindPlane(const PlaneSet& set, const SweepGuide& guide,
+                            size_t pixel, const Vec3& ray) {
+  if (set.index.empty() || set.index.data()[pixel] == PlaneSet::kNone) {
+    return Plane();
+  }
+  const Plane plane = PlaneAt(set.planes[set.index.data()[pixel]], ray);
+  const bool in_range =
+      plane.depth >= guide.depth_min && plane.depth <= guide.depth_max;
+  return in_range ? plane : Plane();
+}
+
+TAPA_INLINE PixelGuide GuideOf(const SweepGuide& guide, size_t pixel,
+                               const Vec3& ray) {
+  PixelGuide result;
+  if (!guide.textureness.empty()) {
+    result.weights = TextureWeights::FromTextureness(
+        guide.textureness.data()[pixel], guide.weight_range);
+  }
+  result.fine = FindPlane(guide.fine, guide, pixel, ray);
+  result.coarse = FindPlane(guide.coarse, guide, pixel, ray);
+  return result;
+}
+
 // Returns false if told to stop on the way.
 HWY_ATTR bool SweepLine(const ProblemData& data, const SweepParams& params,
-                        const Line& line, Pause* pause, SweepState* state,
-                        SweepScratch* scratch) {
+                        const SweepGuide& guide, const Line& line, Pause* pause,
+                        SweepState* state, SweepScratch* scratch) {
   const RefCamera camera = data.cameras.reference();
   const SourceCameras views = data.cameras.sources();
   const size_t mask_bytes = (views.count + 7) / 8;
@@ -185,21 +209,24 @@ HWY_ATTR bool SweepLine(const ProblemData& data, const SweepParams& params,
     Sources sources(data, scratch->patch, consistent);
     const Plane current = {state->depth.At(row, col),
                            state->normal.At(row, col)};
-    bool keep;
-    const Plane chosen =
-        SweepPixel<SerialLanes>(params, camera, views, sources, row, col, pixel,
-                                current, previous, previous_ray, &s, &keep);
+    const Vec3 ray = camera.Ray(row, col);
+    const Choice choice = SweepPixel<SerialLanes>(
+        params, camera, views, sources, row, col, pixel, current, previous,
+        previous_ray, GuideOf(guide, pixel, ray), &s);
     StorePixel(s, pixel, views, state);
-    if (keep) {
-      state->depth.At(row, col) = chosen.depth;
-      state->normal.At(row, col) = chosen.normal;
+    if (!state->chosen.empty()) {
+      state->chosen.data()[pixel] = static_cast<uint8_t>(choice.hypothesis);
+    }
+    if (choice.keep) {
+      state->depth.At(row, col) = choice.plane.depth;
+      state->normal.At(row, col) = choice.plane.normal;
     } else {
       state->depth.At(row, col) = 0;
       state->normal.At(row, col) = Vec3();
       std::memset(consistent, 0, mask_bytes);
     }
-    previous = chosen;
-    previous_ray = camera.Ray(row, col);
+    previous = choice.plane;
+    previous_ray = ray;
     if (!pause->GoOnAfterPixel()) {
       return false;
     }
@@ -208,12 +235,13 @@ HWY_ATTR bool SweepLine(const ProblemData& data, const SweepParams& params,
 }
 
 void SweepLinesImpl(const ProblemData& data, const SweepParams& params,
-                    Direction direction, int begin, int end, const GoOn& go_on,
-                    SweepState* state, SweepScratch* scratch) {
+                    const SweepGuide& guide, Direction direction, int begin,
+                    int end, const GoOn& go_on, SweepState* state,
+                    SweepScratch* scratch) {
   Pause pause(data, go_on);
   for (int index = begin; index < end; ++index) {
-    if (!SweepLine(data, params, MakeLine(data, direction, index), &pause,
-                   state, scratch)) {
+    if (!SweepLine(data, params, guide, MakeLine(data, direction, index),
+                   &pause, state, scratch)) {
       return;
     }
   }
@@ -276,8 +304,8 @@ HWY_EXPORT(InstructionSetImpl);
 namespace {
 
 // Arrays over the views in PixelScratch: cost, prob, forward, cdf, num_drawn,
-// source_depth, the hypotheses' costs and three geometric ones.
-constexpr int kNumScratchArrays = 6 + kNumHypotheses + 3;
+// source_depth, the hypotheses' costs and the geometric ones.
+constexpr int kNumScratchArrays = 6 + kNumHypotheses + kNumDepths;
 
 }  // namespace
 
@@ -301,16 +329,17 @@ SweepScratch::SweepScratch(const ProblemData& data) : patch(data.window) {
     *array = take();
   }
   std::generate_n(pixel.hypothesis_cost, +kNumHypotheses, take);
-  std::generate_n(pixel.geom_cost, 3, take);
+  std::generate_n(pixel.geom_cost, kNumDepths, take);
   pixel.drawn = drawn_.data();
   pixel.projection = projection_.data();
 }
 
 void SweepLines(const ProblemData& data, const SweepParams& params,
-                Direction direction, int begin, int end, const GoOn& go_on,
-                SweepState* state, SweepScratch* scratch) {
+                const SweepGuide& guide, Direction direction, int begin,
+                int end, const GoOn& go_on, SweepState* state,
+                SweepScratch* scratch) {
   HWY_DYNAMIC_DISPATCH(SweepLinesImpl)
-  (data, params, direction, begin, end, go_on, state, scratch);
+  (data, params, guide, direction, begin, end, go_on, state, scratch);
 }
 
 void ComputeCosts(const ProblemData& data, int begin, int end,

@@ -43,8 +43,9 @@ using GoOn = std::function<bool()>;
 // Sweeps along lines [begin, end). Different lines may be swept at the same
 // time.
 void SweepLines(const ProblemData& data, const SweepParams& params,
-                Direction direction, int begin, int end, const GoOn& go_on,
-                SweepState* state, SweepScratch* scratch);
+                const SweepGuide& guide, Direction direction, int begin,
+                int end, const GoOn& go_on, SweepState* state,
+                SweepScratch* scratch);
 
 // Computes the photometric costs of the state's estimates in rows [begin, end)
 // and sets their selection probabilities to one half.

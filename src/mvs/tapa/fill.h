@@ -1,0 +1,35 @@
+#ifndef TAPA_SRC_MVS_TAPA_FILL_H_
+#define TAPA_SRC_MVS_TAPA_FILL_H_
+
+#include <cstdint>
+
+#include "src/mvs/map.h"
+#include "src/mvs/plane.h"
+
+namespace tapa {
+
+struct FillOptions {
+  // Half size of the window, in pixels.
+  int radius = 5;
+  // How often to repeat; pixels filled in one round serve the next.
+  int num_rounds = 1;
+  // Spread of the weights over distance in pixels and over difference in
+  // intensity (0 to 1).
+  float sigma_spatial = 5;
+  float sigma_color = 0.2f;
+};
+
+// Fills missing estimates (depth 0) from those around them (TAPA-MVS, section
+// 5): the depths in the window make a histogram of three bins between the
+// smallest and the largest; depth and normal become the bilaterally weighted
+// mean of the pixels in the fullest bin (of equally full ones the nearest to
+// the camera). This approximates a weighted median and keeps discontinuities. A
+// pixel with no estimate in its window, or whose mean normal would face away
+// from the camera, stays as it is. Returns the number of pixels filled.
+int FillMissing(const FillOptions& options, const RefCamera& camera,
+                const Map<uint8_t>& image, Map<float>* depth,
+                Map<Vec3>* normal);
+
+}  // namespace tapa
+
+#endif  // TAPA_SRC_MVS_TAPA_FILL_H_

@@ -1,0 +1,31 @@
+#ifndef TAPA_SRC_MVS_TAPA_PLANE_FIT_H_
+#define TAPA_SRC_MVS_TAPA_PLANE_FIT_H_
+
+#include <cstdint>
+#include <vector>
+
+#include "src/mvs/plane_set.h"
+
+namespace tapa {
+
+// A plane and the trust in it.
+struct FittedPlane {
+  ScenePlane plane;
+  // Share of the points within the largest distance, 0 to 1; 0: there is no
+  // plane.
+  float inlier_ratio = 0;
+  int num_inliers = 0;
+};
+
+// Plane through most of the points (reference camera's frame, scene units) by
+// RANSAC (Fischler and Bolles, 1981) with a final least-squares fit to the
+// points within max_distance (TAPA-MVS, section 4.1). There is none where fewer
+// than min_num_inliers points agree (at least 3), where the points lie on a
+// line, or where the plane passes through the camera's centre or is seen
+// edge-on from it. Deterministic: `key` chooses the random samples.
+FittedPlane FitPlane(const std::vector<Vec3>& points, float max_distance,
+                     int min_num_inliers, uint64_t key);
+
+}  // namespace tapa
+
+#endif  // TAPA_SRC_MVS_TAPA_PLANE_FIT_H_

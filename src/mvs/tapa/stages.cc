@@ -1,0 +1,132 @@
+#include "src/mvs/tapa/stages.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "src/mvs/camera_table.h"
+#include "src/mvs/tapa/fill.h"
+#include "src/mvs/tapa/speckles.h"
+#include "src/mvs/tapa/textureness.h"
+
+namespace tapa {
+namespace {
+
+// Keys of the random draws of the fine and the coarse planes.
+constexpr uint64_t kFineStream = 0x66696E65;
+constexpr uint64_t kCoarseStream = 0x636F6172;
+
+Map<Rgb> ColorOf(const Problem& problem) {
+  if (problem.reference_color != nullptr) {
+    return *problem.reference_color;
+  }
+  const Map<uint8_t>& grey = *problem.reference.image;
+  Map<Rgb> color(grey.width(), grey.height());
+  for (size_t i = 0; i < grey.size(); ++i) {
+    const uint8_t value = grey.data()[i];
+    color.data()[i] = {value, value, value};
+  }
+  return color;
+}
+
+int NumSuperpixels(int width, double divisor) {
+  return std::max(1, static_cast<int>(std::lround(width / divisor)));
+}
+
+}  // namespace
+
+TapaStages::TapaStages(const Options& options, const Problem& problem)
+    : options_(options),
+      problem_(problem),
+      camera_(CameraTable(problem).reference()) {
+  const Map<uint8_t>& image = *problem.reference.image;
+  TexturenessOptions textureness;
+  textureness.epsilon = options.tapa.textureness_variance;
+  textureness.min_textureness = options.tapa.min_textureness;
+  record_.textureness = ComputeTextureness(image, textureness);
+
+  const Map<Rgb> color = ColorOf(problem);
+  if (options.tapa.fine_superpixels) {
+    record_.fine.superpixels = ComputeSuperpixels(
+        color, NumSuperpixels(image.width(), options.tapa.fine_divisor));
+  }
+  if (options.tapa.coarse_superpixels) {
+    record_.coarse.superpixels = ComputeSuperpixels(
+        color, NumSuperpixels(image.width(), options.tapa.coarse_divisor));
+  }
+}
+
+void TapaStages::Begin(Backend* backend) {
+  if (options_.tapa.texture_weighting) {
+    backend->SetTextureness(record_.textureness);
+  }
+  // The photometric pass begins at random.
+  if (options_.geom_consistency) {
+    ProposePlanes(0, backend);
+  }
+}
+
+void TapaStages::ProposePlanes(int iteration, Backend* backend) {
+  if (record_.fine.superpixels.count() == 0 &&
+      record_.coarse.superpixels.count() == 0) {
+    return;
+  }
+  Map<float> depth = backend->Depth();
+  RemoveSpeckles(SpeckleContinuity(), MaxSpeckleSize(), &depth);
+  PlaneSet fine = FitAndDraw(depth, iteration, kFineStream, &record_.fine);
+  PlaneSet coarse =
+      FitAndDraw(depth, iteration, kCoarseStream, &record_.coarse);
+  backend->SetPlanes(std::move(fine), std::move(coarse));
+}
+
+PlaneSet TapaStages::FitAndDraw(const Map<float>& depth, int iteration,
+                                uint64_t stream,
+                                Segmentation* segmentation) const {
+  const Superpixels& superpixels = segmentation->superpixels;
+  if (superpixels.count() == 0) {
+    return PlaneSet();
+  }
+  const uint64_t seed = options_.seed ^ (stream << 32);
+  segmentation->planes =
+      FitPlanes(options_.tapa, camera_, depth, superpixels, seed);
+  return DrawPlanes(superpixels, segmentation->planes, seed, iteration);
+}
+
+void TapaStages::Refine(Estimate* estimate) {
+  record_.chosen = std::move(estimate->chosen);
+  record_.swept_depth = estimate->depth;
+  if (!options_.tapa.refinement) {
+    return;
+  }
+  RemoveSpeckles(SpeckleContinuity(), MaxSpeckleSize(), &estimate->depth);
+  record_.filtered_depth = estimate->depth;
+  FillOptions fill;
+  fill.radius = options_.tapa.fill_radius;
+  fill.num_rounds = options_.tapa.fill_rounds;
+  fill.sigma_spatial =
+      static_cast<float>(options_.sigma_spatial > 0 ? options_.sigma_spatial
+                                                    : options_.window_radius);
+  fill.sigma_color = static_cast<float>(options_.sigma_color);
+  FillMissing(fill, camera_, *problem_.reference.image, &estimate->depth,
+              &estimate->normal);
+  for (size_t i = 0; i < estimate->depth.size(); ++i) {
+    if (!(estimate->depth.data()[i] > 0)) {
+      estimate->normal.data()[i] = Vec3();
+    }
+  }
+}
+
+int TapaStages::MaxSpeckleSize() const {
+  return static_cast<int>(options_.tapa.speckle_size *
+                          record_.textureness.size());
+}
+
+Continuity TapaStages::SpeckleContinuity() const {
+  Continuity continuity;
+  continuity.step =
+      static_cast<float>(options_.tapa.speckle_continuity *
+                         (problem_.depth_max - problem_.depth_min));
+  return continuity;
+}
+
+}  // namespace tapa
