@@ -3,32 +3,12 @@
 #include <cmath>
 #include <random>
 #include <stdexcept>
-#include <vector>
 
 #include "src/mvs/tapa/textureness.h"
+#include "tests/mvs/tapa_reference.h"
 
 namespace tapa {
 namespace {
-
-// The definition, word by word, with two passes over each patch.
-double NaiveTextureness(const Map<uint8_t>& image, int row, int col,
-                        const TexturenessOptions& options) {
-  std::vector<double> values;
-  for (int r = row - options.radius; r <= row + options.radius; ++r) {
-    for (int c = col - options.radius; c <= col + options.radius; ++c) {
-      if (r < 0 || r >= image.height() || c < 0 || c >= image.width()) continue;
-      values.push_back(image.At(r, c) / 255.0);
-    }
-  }
-  double mean = 0;
-  for (const double value : values) mean += value / values.size();
-  double variance = 0;
-  for (const double value : values) {
-    variance += (value - mean) * (value - mean) / values.size();
-  }
-  return (variance + options.epsilon) /
-         (variance + options.epsilon / options.min_textureness);
-}
 
 Map<uint8_t> RandomImage(int width, int height, int low, int high, int seed) {
   std::mt19937 generator(seed);
@@ -40,14 +20,15 @@ Map<uint8_t> RandomImage(int width, int height, int low, int high, int seed) {
   return image;
 }
 
-void ExpectNaive(const Map<uint8_t>& image, const TexturenessOptions& options) {
+void ExpectReference(const Map<uint8_t>& image,
+                     const TexturenessOptions& options) {
   const Map<float> textureness = ComputeTextureness(image, options);
   ASSERT_EQ(textureness.width(), image.width());
   ASSERT_EQ(textureness.height(), image.height());
   for (int row = 0; row < image.height(); ++row) {
     for (int col = 0; col < image.width(); ++col) {
       ASSERT_NEAR(textureness.At(row, col),
-                  NaiveTextureness(image, row, col, options), 1e-6)
+                  reference::Textureness(image, row, col, options), 1e-6)
           << "row " << row << " col " << col;
     }
   }
@@ -68,7 +49,7 @@ TEST(TexturenessTest, AgreesWithDefinition) {
       for (const int radius : {0, 1, 2, 7, 40}) {
         TexturenessOptions options;
         options.radius = radius;
-        ExpectNaive(image, options);
+        ExpectReference(image, options);
       }
     }
   }

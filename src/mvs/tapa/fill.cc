@@ -38,6 +38,8 @@ struct Sample {
   float weight;
 };
 
+bool IsDepth(float depth) { return depth > 0 && std::isfinite(depth); }
+
 // The window around one pixel, clipped to the image.
 void CollectSamples(const Weights& weights, const Map<uint8_t>& image,
                     const Map<float>& depth, const Map<Vec3>& normal, int row,
@@ -51,7 +53,7 @@ void CollectSamples(const Weights& weights, const Map<uint8_t>& image,
   const int right = std::min(col + radius, image.width() - 1);
   for (int y = top; y <= bottom; ++y) {
     for (int x = left; x <= right; ++x) {
-      if (depth.At(y, x) > 0) {
+      if (IsDepth(depth.At(y, x))) {
         const int difference = std::abs(image.At(y, x) - image.At(row, col));
         const int place = (y - row + radius) * size + x - col + radius;
         samples->push_back(
@@ -119,7 +121,7 @@ int FillMissing(const FillOptions& options, const RefCamera& camera,
     fills.clear();
     for (int row = 0; row < image.height(); ++row) {
       for (int col = 0; col < image.width(); ++col) {
-        if (depth->At(row, col) > 0) {
+        if (IsDepth(depth->At(row, col))) {
           continue;
         }
         CollectSamples(weights, image, *depth, *normal, row, col, &samples);

@@ -110,7 +110,9 @@ Fit RunRansac(const std::vector<Vec3>& points, double max_distance,
   for (int trial = 0; trial < num_trials; ++trial) {
     const Random random(key, trial, 0);
     const auto draw = [&](int i) {
-      return points[static_cast<size_t>(random.Uniform(i) * size)];
+      // Rounding may reach the size where that is large.
+      return points[std::min(static_cast<size_t>(random.Uniform(i) * size),
+                             size - 1)];
     };
     const Fit fit = ThroughPoints(draw(0), draw(1), draw(2));
     if (!fit.valid) {

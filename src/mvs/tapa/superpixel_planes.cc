@@ -1,6 +1,7 @@
 #include "src/mvs/tapa/superpixel_planes.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "src/mvs/random.h"
 
@@ -25,7 +26,7 @@ std::vector<SuperpixelPoints> GatherPoints(const RefCamera& camera,
       SuperpixelPoints& superpixel = result[superpixels.labels.At(row, col)];
       ++superpixel.num_pixels;
       const float z = depth.At(row, col);
-      if (z > 0) {
+      if (z > 0 && std::isfinite(z)) {
         superpixel.points.push_back(z * camera.Ray(row, col));
       }
     }

@@ -68,6 +68,17 @@ int Renumber(Map<uint16_t>* labels) {
   return count;
 }
 
+// Whether OpenCV's SEEDS finds rows and columns for its blocks; it divides by
+// their numbers. It makes ten superpixels of fewer.
+bool HasGrid(const Map<Rgb>& image, int num_superpixels) {
+  const double count = std::max(num_superpixels, 10);
+  const int rows =
+      static_cast<int>(std::sqrt(count * image.height() / image.width()));
+  return rows > 0 &&
+         static_cast<int64_t>(rows) * image.width() >= image.height();
+}
+
+// Leaves the labels alone where the image's shape has no room for blocks.
 // OpenCV's SEEDS mislabels floating point input, so it gets 8-bit Lab.
 void RunSeeds(const Map<Rgb>& image, int num_superpixels,
               Map<uint16_t>* labels) {
@@ -82,6 +93,9 @@ void RunSeeds(const Map<Rgb>& image, int num_superpixels,
   const auto seeds = cv::ximgproc::createSuperpixelSEEDS(
       image.width(), image.height(), 3, num_superpixels, kNumLevels, kPrior,
       kHistogramBins);
+  if (seeds->getNumberOfSuperpixels() < 1) {
+    return;
+  }
   seeds->iterate(lab, kNumIterations);
   cv::Mat result;
   seeds->getLabels(result);
@@ -130,7 +144,8 @@ Superpixels ComputeSuperpixels(const Map<Rgb>& image, int num_superpixels) {
   const int count = static_cast<int>(
       std::min<size_t>({static_cast<size_t>(std::max(num_superpixels, 1)), room,
                         static_cast<size_t>(kMaxSuperpixels)}));
-  if (std::min(image.width(), image.height()) >= kMinSize && count > 1) {
+  if (std::min(image.width(), image.height()) >= kMinSize && count > 1 &&
+      HasGrid(image, count)) {
     RunSeeds(image, count, &result.labels);
   }
   result.neighbors =
