@@ -229,6 +229,7 @@ State Initialize(const Options& options, const Problem& problem,
   State state;
   state.depth = depth;
   state.normal = normal;
+  state.chosen = Map<uint8_t>(depth.width(), depth.height());
   for (int row = 0; row < depth.height(); ++row) {
     for (int col = 0; col < depth.width(); ++col) {
       const Plane plane = {depth.At(row, col), normal.At(row, col)};
@@ -310,10 +311,29 @@ std::vector<int> DrawViews(const Options& options, const Random& random,
   return drawn;
 }
 
+// Depth 0: no hypothesis.
+Plane PlaneOfPixel(const PlaneSet& set, const SweepGuide& guide,
+                   const Problem& problem, int row, int col) {
+  if (set.index.empty() || set.index.At(row, col) == PlaneSet::kNone) {
+    return Plane();
+  }
+  const ScenePlane& plane = set.planes[set.index.At(row, col)];
+  const double depth =
+      -plane.distance / ToEigen(plane.normal).dot(Ray(problem, row, col));
+  if (!(depth >= guide.depth_min) || !(depth <= guide.depth_max)) {
+    return Plane();
+  }
+  return {static_cast<float>(depth), plane.normal};
+}
+
 }  // namespace
 
-void Sweep(const Options& options, const Problem& problem, int index,
-           State* state) {
+double PlusWeight(double t, double range) { return (1 - range) + range * t; }
+
+double MinusWeight(double t, double range) { return 1 - range * t; }
+
+void Sweep(const Options& options, const Problem& problem,
+           const SweepGuide& guide, int index, State* state) {
   const int num_sources = static_cast<int>(problem.sources.size());
   const int width = state->depth.width();
   const int direction = index % 4;
@@ -379,7 +399,17 @@ void Sweep(const Options& options, const Problem& problem, int index,
           {static_cast<float>(propagated), previous_normal},
           {random_depth, random_normal},
           {current.depth, random_normal},
-          {random_depth, current.normal}};
+          {random_depth, current.normal},
+          PlaneOfPixel(guide.fine, guide, problem, row, col),
+          PlaneOfPixel(guide.coarse, guide, problem, row, col)};
+      constexpr size_t kFirstPlanar = 5;
+      double plus = 1;
+      double minus = 1;
+      if (!guide.textureness.empty()) {
+        const double t = guide.textureness.At(row, col);
+        plus = PlusWeight(t, guide.weight_range);
+        minus = MinusWeight(t, guide.weight_range);
+      }
 
       size_t best = 0;
       double best_cost = std::numeric_limits<double>::infinity();
@@ -388,14 +418,17 @@ void Sweep(const Options& options, const Problem& problem, int index,
                       !(ToEigen(planes[k].normal).dot(ray) < 0))) {
           continue;
         }
+        const double photometric_weight = k < kFirstPlanar ? minus : plus;
+        const double geometric_weight = k < kFirstPlanar ? plus : minus;
         double cost = 0;
         for (const int m : drawn) {
-          cost += k == 0 ? state->cost[at(i, m)]
-                         : RoundCost(PhotometricCost(options, problem, row, col,
-                                                     planes[k], m));
+          cost += photometric_weight *
+                  (k == 0 ? state->cost[at(i, m)]
+                          : RoundCost(PhotometricCost(options, problem, row,
+                                                      col, planes[k], m)));
           if (options.geom_consistency) {
             cost +=
-                options.geom_consistency_regularizer *
+                geometric_weight * options.geom_consistency_regularizer *
                 GeometricCost(options, problem, row, col, planes[k].depth, m);
           }
         }
@@ -417,6 +450,7 @@ void Sweep(const Options& options, const Problem& problem, int index,
       }
       state->depth.At(row, col) = planes[best].depth;
       state->normal.At(row, col) = planes[best].normal;
+      state->chosen.At(row, col) = static_cast<uint8_t>(best);
       before = pixels[i];
     }
   }

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "src/mvs/cpu/problem_data.h"
 #include "src/mvs/estimate_depth.h"
 #include "src/mvs/plane.h"
 
@@ -36,6 +37,8 @@ struct State {
   Map<Vec3> normal;
   std::vector<double> cost;
   std::vector<double> prob;
+  // The hypothesis (src/mvs/sweep.h) that each pixel chose last.
+  Map<uint8_t> chosen;
 };
 
 // Costs as the engine stores them, in steps of 2 / 65535.
@@ -44,10 +47,15 @@ double RoundCost(double cost);
 State Initialize(const Options& options, const Problem& problem,
                  const Map<float>& depth, const Map<Vec3>& normal);
 
+// What textureness t makes of the two terms of a cost: w+ = (1 - range) + range
+// t and w- = 1 - range t.
+double PlusWeight(double t, double range);
+double MinusWeight(double t, double range);
+
 // One sweep without filter; `index` counts sweeps from 0, its remainder by 4
 // gives the direction.
-void Sweep(const Options& options, const Problem& problem, int index,
-           State* state);
+void Sweep(const Options& options, const Problem& problem,
+           const SweepGuide& guide, int index, State* state);
 
 struct Position {
   int row;

@@ -3,12 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 #include <ostream>
 #include <random>
 #include <string>
 
 #include "src/mvs/camera_table.h"
 #include "src/mvs/cpu/sweep.h"
+#include "src/mvs/tapa/textureness.h"
+#include "src/mvs/texture_weights.h"
 #include "tests/mvs/reference.h"
 #include "tests/mvs/synthetic.h"
 
@@ -162,12 +165,114 @@ SweepParams MakeParams(const Options& options, int index) {
 
 struct SweepCase {
   bool geometric;
+  bool guided;
   int index;
 
   friend void PrintTo(const SweepCase& c, std::ostream* out) {
-    *out << (c.geometric ? "geometric" : "photometric") << " sweep " << c.index;
+    *out << (c.geometric ? "geometric" : "photometric")
+         << (c.guided ? " guided" : "") << " sweep " << c.index;
   }
 };
+
+ScenePlane PlaneThrough(float depth, const Vec3& normal) {
+  const float norm = std::sqrt(Dot(normal, normal));
+  return {(1 / norm) * normal, -depth * normal.z / norm};
+}
+
+// Every pixel draws one of them or, at times, none.
+PlaneSet DrawAtRandom(const std::vector<ScenePlane>& planes, int width,
+                      int height, std::mt19937* random) {
+  PlaneSet set;
+  set.planes = planes;
+  set.index = Map<uint16_t>(width, height);
+  for (size_t i = 0; i < set.index.size(); ++i) {
+    const size_t draw = (*random)() % (planes.size() + 1);
+    set.index.data()[i] =
+        draw < planes.size() ? static_cast<uint16_t>(draw) : PlaneSet::kNone;
+  }
+  return set;
+}
+
+// Planes near the truth and far from it, out of the range of depths and turned
+// away.
+SweepGuide MakeGuide(const SyntheticPlane& scene, std::mt19937* random) {
+  const Problem& problem = scene.problem();
+  const Map<uint8_t>& image = *problem.reference.image;
+  const float depth = 4.0f;
+  const Vec3 normal = scene.normal();
+  SweepGuide guide;
+  guide.depth_min = problem.depth_min;
+  guide.depth_max = problem.depth_max;
+  guide.weight_range = 0.2f;
+  guide.textureness = Map<float>(image.width(), image.height());
+  for (size_t i = 0; i < guide.textureness.size(); ++i) {
+    guide.textureness.data()[i] = 0.2f + (*random)() % 1000 * 0.0008f;
+  }
+  const ScenePlane truth = PlaneThrough(depth, normal);
+  guide.fine = DrawAtRandom({truth,
+                             PlaneThrough(1.002f * depth, normal),
+                             PlaneThrough(1.2f * depth, normal),
+                             PlaneThrough(depth, {-0.2f, 0.3f, -1}),
+                             PlaneThrough(0.4f * depth, normal),
+                             PlaneThrough(3 * depth, normal),
+                             {-truth.normal, -truth.distance},
+                             {truth.normal, -truth.distance}},
+                            image.width(), image.height(), random);
+  guide.coarse = DrawAtRandom({PlaneThrough(0.999f * depth, normal),
+                               truth,
+                               PlaneThrough(depth, {0.25f, -0.1f, -1}),
+                               PlaneThrough(1.4f * depth, {0, 0, -1}),
+                               {{1, 0, 0}, 1e-6f}},
+                              image.width(), image.height(), random);
+  return guide;
+}
+
+// A state at which sweeps start, in the engine's form.
+SweepState MakeState(const ProblemData& data, const Map<float>& depth,
+                     const Map<Vec3>& normal, SweepScratch* scratch) {
+  SweepState state(data, false);
+  state.depth = depth;
+  state.normal = normal;
+  state.chosen = Map<uint8_t>(data.width, data.height);
+  ComputeCosts(
+      data, 0, data.height, [] { return true; }, &state, scratch);
+  return state;
+}
+
+// A whole sweep.
+void RunSweep(const ProblemData& data, const SweepParams& params,
+              const SweepGuide& guide, SweepState* state,
+              SweepScratch* scratch) {
+  const auto direction = static_cast<Direction>(params.index % 4);
+  SweepLines(
+      data, params, guide, direction, 0, NumLines(data, direction),
+      [] { return true; }, state, scratch);
+}
+
+struct Start {
+  Map<float> depth;
+  Map<Vec3> normal;
+};
+
+// Half of the pixels near the truth, so that propagation has something to
+// spread.
+Start StartNearTruth(const SyntheticPlane& scene) {
+  const Map<float>& truth = scene.depth();
+  Start start = {Map<float>(truth.width(), truth.height()),
+                 Map<Vec3>(truth.width(), truth.height())};
+  const RefCamera camera = CameraTable(scene.problem()).reference();
+  std::mt19937 random(4);
+  std::uniform_real_distribution<float> factors(0.7f, 1.4f);
+  for (int row = 0; row < truth.height(); ++row) {
+    for (int col = 0; col < truth.width(); ++col) {
+      start.depth.At(row, col) =
+          truth.At(row, col) * (random() % 2 ? factors(random) : 1.001f);
+      start.normal.At(row, col) =
+          RandomNormal(Random(random(), 0, 0), camera.Ray(row, col));
+    }
+  }
+  return start;
+}
 
 class SweepTest : public testing::TestWithParam<SweepCase> {};
 
@@ -185,50 +290,50 @@ TEST_P(SweepTest, MakesTheChoicesOfTheReference) {
   options.seed = 11;
   const Problem problem =
       GetParam().geometric ? scene.GeometricProblem() : scene.problem();
-
-  // Half of the pixels start near the truth, so that propagation has something
-  // to spread.
-  Map<float> depth(44, 36);
-  Map<Vec3> normal(44, 36);
-  const RefCamera camera = CameraTable(problem).reference();
-  std::mt19937 random(4);
-  std::uniform_real_distribution<float> factors(0.7f, 1.4f);
-  for (int row = 0; row < 36; ++row) {
-    for (int col = 0; col < 44; ++col) {
-      depth.At(row, col) = scene.depth().At(row, col) *
-                           (random() % 2 ? factors(random) : 1.001f);
-      normal.At(row, col) =
-          RandomNormal(Random(random(), 0, 0), camera.Ray(row, col));
-    }
-  }
+  const auto [depth, normal] = StartNearTruth(scene);
+  std::mt19937 random(6);
+  const SweepGuide guide =
+      GetParam().guided ? MakeGuide(scene, &random) : SweepGuide();
 
   reference::State expected =
       reference::Initialize(options, problem, depth, normal);
-  reference::Sweep(options, problem, GetParam().index, &expected);
+  reference::Sweep(options, problem, guide, GetParam().index, &expected);
 
   const ProblemData data(options, problem);
   SweepScratch scratch(data);
-  SweepState actual(data, false);
-  actual.depth = depth;
-  actual.normal = normal;
-  const auto go_on = [] { return true; };
-  ComputeCosts(data, 0, data.height, go_on, &actual, &scratch);
+  SweepState actual = MakeState(data, depth, normal, &scratch);
   const auto first_cost = actual.cost;
   const auto direction = static_cast<Direction>(GetParam().index % 4);
-  SweepLines(data, MakeParams(options, GetParam().index), SweepGuide(),
-             direction, 0, NumLines(data, direction), go_on, &actual, &scratch);
+  RunSweep(data, MakeParams(options, GetParam().index), guide, &actual,
+           &scratch);
 
   int num_same = 0;
+  int num_same_choices = 0;
   int num_changed = 0;
+  int num_chosen[kNumHypotheses] = {};
   for (size_t i = 0; i < depth.size(); ++i) {
+    // The first pixel of a line propagates its own plane to itself.
+    const uint8_t choice = actual.chosen.data()[i];
+    const uint8_t expected_choice = expected.chosen.data()[i];
+    num_same_choices += choice == expected_choice ||
+                        std::max(choice, expected_choice) <= kPropagated;
+    ++num_chosen[choice];
     const Vec3 difference = actual.normal.data()[i] - expected.normal.data()[i];
     num_same += std::abs(actual.depth.data()[i] - expected.depth.data()[i]) <
                     1e-4f * expected.depth.data()[i] &&
                 Dot(difference, difference) < 1e-8f;
     num_changed += actual.depth.data()[i] != depth.data()[i];
   }
-  EXPECT_GE(num_same, 0.999 * depth.size());
+  // More hypotheses are alike to all digits of single precision, and what one
+  // pixel chooses spreads.
+  const double share_same = GetParam().guided ? 0.998 : 0.999;
+  EXPECT_GE(num_same, share_same * depth.size());
+  EXPECT_GE(num_same_choices, share_same * depth.size());
   EXPECT_GT(num_changed, 0.25 * depth.size());
+  for (const Hypothesis planar : {kFinePlane, kCoarsePlane}) {
+    EXPECT_EQ(num_chosen[planar] > 0.03 * depth.size(), GetParam().guided)
+        << num_chosen[planar];
+  }
 
   // Selection probabilities as the reference derives them from the engine's
   // costs before and after the sweep.
@@ -268,14 +373,195 @@ TEST_P(SweepTest, MakesTheChoicesOfTheReference) {
 
 INSTANTIATE_TEST_SUITE_P(
     AllDirections, SweepTest,
-    testing::Values(SweepCase{false, 0}, SweepCase{false, 1},
-                    SweepCase{false, 2}, SweepCase{false, 3},
-                    SweepCase{false, 9}, SweepCase{true, 0}, SweepCase{true, 3},
-                    SweepCase{true, 14}),
+    testing::Values(SweepCase{false, false, 0}, SweepCase{false, false, 1},
+                    SweepCase{false, false, 2}, SweepCase{false, false, 3},
+                    SweepCase{false, false, 9}, SweepCase{true, false, 0},
+                    SweepCase{true, false, 3}, SweepCase{true, false, 14},
+                    SweepCase{false, true, 0}, SweepCase{false, true, 5},
+                    SweepCase{false, true, 10}, SweepCase{true, true, 1},
+                    SweepCase{true, true, 4}, SweepCase{true, true, 11}),
     [](const auto& info) {
       return std::string(info.param.geometric ? "Geometric" : "Photometric") +
+             (info.param.guided ? "Guided" : "") +
              std::to_string(info.param.index);
     });
+
+TEST(TextureWeights, AreThoseOfThePaper) {
+  for (const double range : {0.0, 0.1, 0.2, 0.5, 1.0}) {
+    for (const double t : {0.5, 0.5 + 1e-6, 0.6, 0.75, 0.9, 1.0, 0.0, 0.3}) {
+      const TextureWeights weights = TextureWeights::FromTextureness(
+          static_cast<float>(t), static_cast<float>(range));
+      const double plus = reference::PlusWeight(t, range);
+      const double minus = reference::MinusWeight(t, range);
+      EXPECT_NEAR(weights.own.photometric, minus, 1e-6);
+      EXPECT_NEAR(weights.own.geometric, plus, 1e-6);
+      EXPECT_NEAR(weights.planar.photometric, plus, 1e-6);
+      EXPECT_NEAR(weights.planar.geometric, minus, 1e-6);
+    }
+  }
+  // The paper's numbers at both ends.
+  const TextureWeights full = TextureWeights::FromTextureness(1.0f, 0.2f);
+  EXPECT_EQ(full.planar.photometric, 1.0f);
+  EXPECT_EQ(full.own.photometric, 0.8f);
+  // Without texture all weights are the same number, bit for bit.
+  for (const float range : {0.0f, 0.1f, 0.2f, 0.3f, 0.7f, 1.0f}) {
+    const TextureWeights flat = TextureWeights::FromTextureness(0.5f, range);
+    EXPECT_EQ(flat.own.photometric, flat.planar.photometric);
+    EXPECT_EQ(flat.own.photometric, flat.own.geometric);
+    EXPECT_EQ(flat.own.photometric, flat.planar.geometric);
+  }
+}
+
+bool SameState(const SweepState& a, const SweepState& b) {
+  const auto same = [](const auto& x, const auto& y) {
+    return x.size() == y.size() &&
+           std::memcmp(x.data(), y.data(), x.size() * sizeof(x.data()[0])) == 0;
+  };
+  return same(a.depth, b.depth) && same(a.normal, b.normal) &&
+         a.cost == b.cost && a.prob == b.prob && same(a.chosen, b.chosen);
+}
+
+TEST(Sweep, WithoutPlanesAndWeightsIsThePlainAlgorithm) {
+  const SyntheticPlane scene{SyntheticOptions()};
+  const auto [depth, normal] = StartNearTruth(scene);
+  for (const bool geometric : {false, true}) {
+    Options options;
+    options.geom_consistency = geometric;
+    const Problem problem =
+        geometric ? scene.GeometricProblem() : scene.problem();
+    const ProblemData data(options, problem);
+    SweepScratch scratch(data);
+    const auto sweep_twice = [&](const SweepGuide& guide) {
+      SweepState state = MakeState(data, depth, normal, &scratch);
+      RunSweep(data, MakeParams(options, 4), guide, &state, &scratch);
+      RunSweep(data, MakeParams(options, 5), guide, &state, &scratch);
+      return state;
+    };
+    const SweepState plain = sweep_twice(SweepGuide());
+
+    std::mt19937 random(1);
+    const SweepGuide guide = MakeGuide(scene, &random);
+    EXPECT_FALSE(SameState(sweep_twice(guide), plain));
+    // No pixel has a plane, and weights change nothing.
+    SweepGuide idle = guide;
+    idle.weight_range = 0;
+    for (PlaneSet* set : {&idle.fine, &idle.coarse}) {
+      set->index = Map<uint16_t>(data.width, data.height, PlaneSet::kNone);
+    }
+    EXPECT_TRUE(SameState(sweep_twice(idle), plain));
+    // No plane is possible: out of range, behind the camera, turned away or
+    // seen edge-on.
+    SweepGuide impossible;
+    impossible.depth_min = problem.depth_min;
+    impossible.depth_max = problem.depth_max;
+    const Vec3 n = scene.normal();
+    for (PlaneSet* set : {&impossible.fine, &impossible.coarse}) {
+      *set = DrawAtRandom({PlaneThrough(0.2f, n),
+                           PlaneThrough(100, n),
+                           {n, -4},
+                           {-n, 4},
+                           {-n, -4},
+                           {{0, 0, 0}, 4},
+                           {{NAN, 0, -1}, 4},
+                           {{0, 0, -1}, NAN}},
+                          data.width, data.height, &random);
+    }
+    EXPECT_TRUE(SameState(sweep_twice(impossible), plain));
+  }
+}
+
+TEST(Sweep, RangeOfDepthsIncludesItsEnds) {
+  const SyntheticPlane scene{SyntheticOptions()};
+  const Problem& problem = scene.problem();
+  Options options;
+  options.geom_consistency = false;
+  const Map<uint8_t> flat(48, 40, 90);
+  Problem flat_problem = problem;
+  flat_problem.reference.image = &flat;
+  const ProblemData data(options, flat_problem);
+  SweepScratch scratch(data);
+  const auto [depth, normal] = StartNearTruth(scene);
+  for (const float distance : {1.9f, 2.0f, 5.0f, 8.0f, 8.1f}) {
+    SweepGuide guide;
+    guide.depth_min = 2;
+    guide.depth_max = 8;
+    guide.fine.planes = {{{0, 0, -1}, distance}};
+    guide.fine.index = Map<uint16_t>(48, 40, uint16_t{0});
+    SweepState state = MakeState(data, depth, normal, &scratch);
+    RunSweep(data, MakeParams(options, 0), guide, &state, &scratch);
+    const bool in_range = distance >= 2 && distance <= 8;
+    EXPECT_EQ(state.chosen.At(20, 24) == kFinePlane, in_range) << distance;
+  }
+}
+
+// Where nothing can be measured every hypothesis costs the same, and the planes
+// win: the coarse one, or the fine one where there is no other.
+void ExpectPlanesToWinOnAFlatPatch(bool geometric) {
+  SyntheticOptions scene_options;
+  scene_options.num_sources = 7;
+  const SyntheticPlane scene(scene_options);
+  const auto [depth, normal] = StartNearTruth(scene);
+  const Map<uint8_t> flat(48, 40, 90);
+  // Source views know no depth: geometric costs are all the largest one.
+  const Map<float> no_depth(48, 40, 0.0f);
+  Problem problem = scene.problem();
+  problem.reference.image = &flat;
+  for (View& source : problem.sources) {
+    source.depth = &no_depth;
+  }
+  Options options;
+  options.geom_consistency = geometric;
+  const ProblemData data(options, problem);
+  SweepScratch scratch(data);
+  for (const bool weighted : {false, true}) {
+    for (const int index : {0, 1, 6, 11}) {
+      SCOPED_TRACE(testing::Message()
+                   << (weighted ? "weighted" : "plain") << ", sweep " << index);
+      std::mt19937 random(index);
+      SweepGuide guide = MakeGuide(scene, &random);
+      const Vec3 n = scene.normal();
+      guide.fine = DrawAtRandom({PlaneThrough(3, n), PlaneThrough(5, n)}, 48,
+                                40, &random);
+      guide.coarse = DrawAtRandom({PlaneThrough(4, n), PlaneThrough(4.5f, n)},
+                                  48, 40, &random);
+      guide.textureness = weighted ? ComputeTextureness(flat) : Map<float>();
+      SweepState state = MakeState(data, depth, normal, &scratch);
+      RunSweep(data, MakeParams(options, index), guide, &state, &scratch);
+
+      const RefCamera camera = CameraTable(problem).reference();
+      int num_wrong = 0;
+      for (int row = 5; row < 35; ++row) {
+        for (int col = 5; col < 43; ++col) {
+          const size_t pixel = static_cast<size_t>(row) * 48 + col;
+          for (int m = 0; m < 7; ++m) {
+            ASSERT_EQ(DecodeCost(state.cost[pixel * 7 + m]), kMaxCost);
+          }
+          const uint16_t fine = guide.fine.index.At(row, col);
+          const uint16_t coarse = guide.coarse.index.At(row, col);
+          const int chosen = state.chosen.At(row, col);
+          if (coarse != PlaneSet::kNone) {
+            num_wrong += chosen != kCoarsePlane;
+            if (chosen == kCoarsePlane) {
+              EXPECT_FLOAT_EQ(
+                  state.depth.At(row, col),
+                  PlaneAt(guide.coarse.planes[coarse], camera.Ray(row, col))
+                      .depth);
+            }
+          } else if (fine != PlaneSet::kNone) {
+            num_wrong += chosen != kFinePlane;
+          }
+        }
+      }
+      EXPECT_EQ(num_wrong, 0);
+    }
+  }
+}
+
+TEST(Sweep, OnAFlatPatchPlanesWin) { ExpectPlanesToWinOnAFlatPatch(false); }
+
+TEST(Sweep, DISABLED_OnAFlatPatchPlanesWinInTheGeometricPass) {
+  ExpectPlanesToWinOnAFlatPatch(true);
+}
 
 TEST(Sweep, FilterKeepsWhatEnoughViewsSupport) {
   SyntheticOptions scene_options;
