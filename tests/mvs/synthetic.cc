@@ -18,6 +18,14 @@ uint8_t Texture(double x, double y) {
   return static_cast<uint8_t>(std::clamp(128.0 + 28.0 * value, 0.0, 255.0));
 }
 
+void AddNoise(int amplitude, std::mt19937* random, Map<uint8_t>* image) {
+  std::uniform_int_distribution<int> noise(-amplitude, amplitude);
+  for (size_t i = 0; i < image->size(); ++i) {
+    image->data()[i] = static_cast<uint8_t>(
+        std::clamp(image->data()[i] + noise(*random), 0, 255));
+  }
+}
+
 Camera RandomCamera(const SyntheticOptions& options, bool reference,
                     std::mt19937* random) {
   std::uniform_real_distribution<double> uniform(-1, 1);
@@ -80,6 +88,8 @@ SyntheticPlane::SyntheticPlane(const SyntheticOptions& options) {
   const Eigen::Map<const Matrix> R_ref(cameras[0].R.data());
   const Eigen::Map<const Eigen::Vector3d> t_ref(cameras[0].t.data());
 
+  constexpr uint8_t kWallIntensity = 150;
+  wall_ = Map<uint8_t>(options.width, options.height, 0);
   for (const Camera& camera : cameras) {
     const Eigen::Map<const Matrix> R(camera.R.data());
     const Eigen::Map<const Eigen::Vector3d> t(camera.t.data());
@@ -96,8 +106,16 @@ SyntheticPlane::SyntheticPlane(const SyntheticOptions& options) {
         const double d = n.dot(anchor - center) / n.dot(ray);
         const Eigen::Vector3d point = center + d * ray;
         depth.At(row, col) = static_cast<float>(d);
-        image.At(row, col) = Texture(1.6 * point(0), 1.6 * point(1));
+        const bool on_wall = std::abs(point(0)) < options.wall;
+        image.At(row, col) =
+            on_wall ? kWallIntensity : Texture(1.6 * point(0), 1.6 * point(1));
+        if (images_.empty()) {
+          wall_.At(row, col) = on_wall;
+        }
       }
+    }
+    if (options.noise > 0) {
+      AddNoise(options.noise, &random, &image);
     }
     images_.push_back(std::move(image));
     depths_.push_back(std::move(depth));

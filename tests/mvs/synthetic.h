@@ -21,6 +21,11 @@ struct SyntheticOptions {
   double focal_length = 60.0;
   // Spread of the source cameras' centres around the reference camera.
   double baseline = 0.6;
+  // Half width of a stripe without texture, in scene units: a wall in the
+  // middle of the reference image, from its upper to its lower border. 0: none.
+  double wall = 0;
+  // Noise of every pixel, up to this many steps of intensity up or down.
+  int noise = 0;
   unsigned seed = 1;
 };
 
@@ -34,6 +39,8 @@ class SyntheticPlane {
   // True depth of the reference view, and its true normal.
   const Map<float>& depth() const { return depths_[0]; }
   Vec3 normal() const { return normal_; }
+  // 1 where the reference view sees the stripe without texture.
+  const Map<uint8_t>& wall() const { return wall_; }
 
   // The problem of the geometric pass with the true maps as input.
   Problem GeometricProblem() const;
@@ -41,6 +48,7 @@ class SyntheticPlane {
  private:
   Problem problem_;
   Vec3 normal_;
+  Map<uint8_t> wall_;
   // Of the reference view first, then of the source views.
   std::vector<Map<uint8_t>> images_;
   std::vector<Map<float>> depths_;
