@@ -45,7 +45,7 @@ bool IsGpuIndexList(const std::string& text) {
 
 void CheckOptions(const PatchMatchOptions& options) {
   try {
-    FinalPassOptions(options).Check();
+    EngineOptions(options).Check();
     CheckOption("seed", options.seed, options.seed >= 0, "at least 0");
     CheckOption("max_image_size", options.max_image_size,
                 options.max_image_size == -1 || options.max_image_size > 0,
@@ -71,7 +71,7 @@ void CheckOptions(const PatchMatchOptions& options) {
   }
 }
 
-Options FinalPassOptions(const PatchMatchOptions& options) {
+Options EngineOptions(const PatchMatchOptions& options) {
   Options result;
   result.window_radius = options.window_radius;
   result.window_step = options.window_step;
@@ -93,14 +93,33 @@ Options FinalPassOptions(const PatchMatchOptions& options) {
       options.filter_geom_consistency_max_cost;
   result.filter_min_num_consistent = options.filter_min_num_consistent;
   result.num_threads = options.num_threads;
+
+  result.tapa.enabled = options.tapa;
+#define TAPA_PASS_ON(field) result.tapa.field = options.tapa_##field
+  TAPA_PASS_ON(texture_weighting);
+  TAPA_PASS_ON(fine_superpixels);
+  TAPA_PASS_ON(coarse_superpixels);
+  TAPA_PASS_ON(refinement);
+  TAPA_PASS_ON(textureness_variance);
+  TAPA_PASS_ON(min_textureness);
+  TAPA_PASS_ON(weight_range);
+  TAPA_PASS_ON(fine_divisor);
+  TAPA_PASS_ON(coarse_divisor);
+  TAPA_PASS_ON(plane_distance);
+  TAPA_PASS_ON(relative_plane_distance);
+  TAPA_PASS_ON(speckle_size);
+  TAPA_PASS_ON(speckle_continuity);
+  TAPA_PASS_ON(fill_radius);
+  TAPA_PASS_ON(fill_rounds);
+#undef TAPA_PASS_ON
   return result;
 }
 
-Options FirstPassOptions(const PatchMatchOptions& options) {
-  Options result = FinalPassOptions(options);
-  result.geom_consistency = false;
-  result.filter = false;
-  return result;
+PatchMatchOptions FirstPassOptions(PatchMatchOptions options) {
+  options.geom_consistency = false;
+  options.filter = false;
+  options.tapa_refinement = false;
+  return options;
 }
 
 uint64_t ViewSeed(uint64_t seed, const std::string& image_name,

@@ -12,13 +12,14 @@ namespace tapa {
 // Throws Failure that names the option, if one is out of range.
 void CheckOptions(const colmap::mvs::PatchMatchOptions& options);
 
-// The engine's options for the last pass of a run: the geometric one, if
-// options.geom_consistency, else the photometric one.
-Options FinalPassOptions(const colmap::mvs::PatchMatchOptions& options);
+// The options, but the seed, as the engine takes them.
+Options EngineOptions(const colmap::mvs::PatchMatchOptions& options);
 
-// The engine's options for the photometric pass before a geometric one, which
-// does not filter.
-Options FirstPassOptions(const colmap::mvs::PatchMatchOptions& options);
+// The options of the photometric pass before a geometric one: all pixels keep
+// their estimates, so it neither filters nor, which takes the filter's place,
+// refines.
+colmap::mvs::PatchMatchOptions FirstPassOptions(
+    colmap::mvs::PatchMatchOptions options);
 
 // Key of the random draws for a view in a pass. It does not depend on other
 // views, nor on their order, so that a resumed run gives the same maps.

@@ -22,6 +22,46 @@ struct HostOptions {
   // processors with the same SIMD instructions.
   int seed = 0;
 
+  // Whether to complete surfaces without texture by TAPA-MVS (Romanoni and
+  // Matteucci, ICCV 2019). The options below do nothing without it; they are
+  // those of TapaOptions (src/mvs/options.h), with the same defaults.
+  bool tapa = false;
+
+  // Whether to weigh costs by textureness.
+  bool tapa_texture_weighting = true;
+  // Whether to propose planes fitted to superpixels, fine and coarse ones.
+  bool tapa_fine_superpixels = true;
+  bool tapa_coarse_superpixels = true;
+  // Whether to remove speckles and fill gaps, in the last pass.
+  bool tapa_refinement = true;
+
+  // Variance of intensities (0 to 1) that counts as little texture.
+  double tapa_textureness_variance = 0.00005;
+  // Textureness of a flat patch, above 0 and at most 1.
+  double tapa_min_textureness = 0.5;
+  // By how much textureness changes the weights, 0 to 1.
+  double tapa_weight_range = 0.2;
+
+  // Number of fine superpixels: image width / this.
+  double tapa_fine_divisor = 20;
+  // Number of coarse superpixels: image width / this.
+  double tapa_coarse_divisor = 30;
+  // Largest distance of a point from its superpixel's plane, in scene units;
+  // not positive: tapa_relative_plane_distance decides.
+  double tapa_plane_distance = -1;
+  // The same as a share of the superpixel's median depth.
+  double tapa_relative_plane_distance = 0.01;
+
+  // Connected regions of at most this share of the image are speckles.
+  double tapa_speckle_size = 0.0002;
+  // Neighbouring pixels are connected if their depths differ by at most this
+  // share of the scene's range of depths.
+  double tapa_speckle_continuity = 0.1;
+  // Half size of the window that a missing pixel is filled from, in pixels.
+  int tapa_fill_radius = 5;
+  // How often the fill is repeated.
+  int tapa_fill_rounds = 1;
+
   // Calls visit(name, pointer to the member, help) for every option. Members
   // are bool, int, double or std::string.
   template <typename Visitor>
@@ -43,6 +83,44 @@ struct HostOptions {
           S("Threads on the CPU, -1: one per core"));
     visit(S("seed"), &options->seed,
           S("Key of all random draws: the same seed gives the same maps"));
+    visit(S("tapa"), &options->tapa,
+          S("Complete surfaces without texture (TAPA-MVS); the options tapa_* "
+            "do nothing without it"));
+    visit(S("tapa_texture_weighting"), &options->tapa_texture_weighting,
+          S("Weigh costs by textureness"));
+    visit(S("tapa_fine_superpixels"), &options->tapa_fine_superpixels,
+          S("Propose planes fitted to fine superpixels"));
+    visit(S("tapa_coarse_superpixels"), &options->tapa_coarse_superpixels,
+          S("Propose planes fitted to coarse superpixels"));
+    visit(S("tapa_refinement"), &options->tapa_refinement,
+          S("Remove speckles and fill gaps, in place of the filter"));
+    visit(S("tapa_textureness_variance"), &options->tapa_textureness_variance,
+          S("Variance of intensities (0 to 1) that counts as little texture"));
+    visit(S("tapa_min_textureness"), &options->tapa_min_textureness,
+          S("Textureness of a flat patch, above 0 and at most 1"));
+    visit(S("tapa_weight_range"), &options->tapa_weight_range,
+          S("By how much textureness changes the weights, 0 to 1"));
+    visit(S("tapa_fine_divisor"), &options->tapa_fine_divisor,
+          S("Number of fine superpixels: image width / this"));
+    visit(S("tapa_coarse_divisor"), &options->tapa_coarse_divisor,
+          S("Number of coarse superpixels: image width / this"));
+    visit(S("tapa_plane_distance"), &options->tapa_plane_distance,
+          S("Largest distance of a point from its superpixel's plane, in scene "
+            "units; not positive: tapa_relative_plane_distance decides"));
+    visit(S("tapa_relative_plane_distance"),
+          &options->tapa_relative_plane_distance,
+          S("The same as a share of the superpixel's median depth"));
+    visit(S("tapa_speckle_size"), &options->tapa_speckle_size,
+          S("Connected regions of at most this share of the image are "
+            "speckles"));
+    visit(S("tapa_speckle_continuity"), &options->tapa_speckle_continuity,
+          S("Neighbouring pixels are connected if their depths differ by at "
+            "most this share of the scene's range of depths"));
+    visit(S("tapa_fill_radius"), &options->tapa_fill_radius,
+          S("Half size of the window that a missing pixel is filled from, in "
+            "pixels"));
+    visit(S("tapa_fill_rounds"), &options->tapa_fill_rounds,
+          S("How often the fill is repeated"));
   }
 };
 

@@ -3,6 +3,7 @@
 
 #include <limits>
 #include <string>
+#include <type_traits>
 
 #include "tapa/host_options.h"
 
@@ -20,7 +21,9 @@ void AddOptionRow(Widget* widget, const std::string& name, int* option) {
 }
 template <typename Widget>
 void AddOptionRow(Widget* widget, const std::string& name, double* option) {
-  widget->AddOptionDouble(option, name, -1, 1e7, 0.01, 5);
+  // Steps follow the value, which may be small.
+  auto* box = widget->AddOptionDouble(option, name, -1, 1e7, 0.01, 8);
+  box->setStepType(std::decay_t<decltype(*box)>::AdaptiveDecimalStepType);
 }
 template <typename Widget>
 void AddOptionRow(Widget* widget, const std::string& name,
@@ -28,13 +31,34 @@ void AddOptionRow(Widget* widget, const std::string& name,
   widget->AddOptionText(option, name);
 }
 
-// Adds a row per option to a COLMAP OptionsWidget.
+// Whether the widget has an option on the tab of TAPA.
+inline bool IsTapaOption(const std::string& name) {
+  return name.compare(0, 4, "tapa") == 0;
+}
+
+template <typename Widget>
+void AddOptionRowsIf(bool is_tapa, Widget* widget, HostOptions* options) {
+  options->Visit([is_tapa, widget](const std::string& name, auto option,
+                                   const std::string& /* help */) {
+    if (IsTapaOption(name) == is_tapa) {
+      AddOptionRow(widget, name, option);
+    }
+  });
+}
+
+// Adds a row per option, without those of TAPA, to a COLMAP OptionsWidget.
 template <typename Widget>
 void AddOptionRows(Widget* widget, HostOptions* options) {
-  options->Visit([widget](const std::string& name, auto option,
-                          const std::string& /* help */) {
-    AddOptionRow(widget, name, option);
-  });
+  AddOptionRowsIf(false, widget, options);
+}
+
+// Makes a COLMAP OptionsWidget with the options of TAPA, which are too many for
+// the tab of stereo. The parent owns it.
+template <typename Widget, typename Parent>
+Widget* NewTapaTab(Parent* parent, HostOptions* options) {
+  Widget* widget = new Widget(parent);
+  AddOptionRowsIf(true, widget, options);
+  return widget;
 }
 
 }  // namespace tapa

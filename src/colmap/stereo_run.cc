@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <iostream>
 #include <new>
+#include <optional>
 #include <set>
 #include <stdexcept>
 #include <unordered_set>
@@ -20,6 +21,7 @@ namespace tapa {
 namespace {
 
 using colmap::ExistsPath;
+using colmap::mvs::PatchMatchOptions;
 
 double Megapixels(const SceneView& view) {
   return 1e-6 * view.width * view.height;
@@ -44,7 +46,7 @@ void PrintWarning(const std::string& text) {
 
 }  // namespace
 
-StereoRun::StereoRun(const colmap::mvs::PatchMatchOptions& options,
+StereoRun::StereoRun(const PatchMatchOptions& options,
                      const WorkspaceLocation& location)
     : options_(options), location_(location) {}
 
@@ -251,6 +253,10 @@ StereoRun::Pass StereoRun::FinalPass() const {
   return options_.geom_consistency ? Pass::kGeometric : Pass::kPhotometric;
 }
 
+PatchMatchOptions StereoRun::PassOptions(Pass pass) const {
+  return pass == FinalPass() ? options_ : FirstPassOptions(options_);
+}
+
 std::string StereoRun::MapPath(const std::string& kind, int view,
                                Pass pass) const {
   return location_.MapPath(kind, views_[view].name, pass == Pass::kGeometric);
@@ -316,8 +322,7 @@ bool StereoRun::ComputeView(const ViewIndices& problem, Pass pass,
                             const std::function<bool()>& stopped) {
   const bool geometric = pass == Pass::kGeometric;
   const SceneView& reference = views_[problem.reference];
-  Options options = pass == FinalPass() ? FinalPassOptions(options_)
-                                        : FirstPassOptions(options_);
+  Options options = EngineOptions(PassOptions(pass));
   options.seed = ViewSeed(options_.seed, reference.name, geometric);
 
   // Keep alive what the engine borrows.
@@ -348,6 +353,11 @@ bool StereoRun::ComputeView(const ViewIndices& problem, Pass pass,
     engine_problem.normal = ReadNormalMap(
         MapPath("normal_maps", problem.reference, Pass::kPhotometric),
         reference.width, reference.height);
+  }
+  std::optional<Map<Rgb>> color;
+  if (options.tapa.enabled) {
+    color = ReadColorPhoto(reference);
+    engine_problem.reference_color = &*color;
   }
   const bool has_range = options_.depth_min >= 0;
   engine_problem.depth_min =

@@ -46,6 +46,8 @@ class StereoRun {
   void PrepareFolders() const;
 
   Pass FinalPass() const;
+  // The options that a pass runs with.
+  colmap::mvs::PatchMatchOptions PassOptions(Pass pass) const;
   std::string MapPath(const std::string& kind, int view, Pass pass) const;
   bool WritesGraph(Pass pass) const;
   // Whether all maps of a view are there. Throws Failure if one is damaged.

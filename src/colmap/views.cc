@@ -39,6 +39,37 @@ void NoteMessage(FREE_IMAGE_FORMAT, const char* message) {
   }
 }
 
+// Reads the photograph of a view at the size that stereo works at.
+colmap::Bitmap ReadBitmap(const SceneView& view, bool in_color) {
+  is_truncated = false;
+  FreeImage_SetOutputMessage(&NoteMessage);
+  colmap::Bitmap bitmap;
+  bool is_read = bitmap.Read(view.image_path, in_color);
+  if (in_color && !is_read && bitmap.Read(view.image_path, false)) {
+    // FreeImage does not turn every kind of grey into colour, such as 16 bits.
+    bitmap = bitmap.CloneAsRGB();
+    is_read = true;
+  }
+  FreeImage_SetOutputMessage(nullptr);
+  if (!is_read || is_truncated) {
+    throw Failure("The image " + view.image_path +
+                  " cannot be read; is it there, and is it a whole image?");
+  }
+  if (bitmap.Width() != view.photo_width ||
+      bitmap.Height() != view.photo_height) {
+    throw Failure(
+        "The image " + view.image_path + " has " +
+        std::to_string(bitmap.Width()) + "x" + std::to_string(bitmap.Height()) +
+        " pixels, but its camera has " + std::to_string(view.photo_width) +
+        "x" + std::to_string(view.photo_height) +
+        "; make both the same, as image_undistorter does");
+  }
+  if (view.width != view.photo_width || view.height != view.photo_height) {
+    bitmap.Rescale(view.width, view.height);
+  }
+  return bitmap;
+}
+
 }  // namespace
 
 std::vector<SceneView> SceneViews(const colmap::mvs::Model& model,
@@ -66,30 +97,23 @@ std::vector<SceneView> SceneViews(const colmap::mvs::Model& model,
 }
 
 Map<uint8_t> ReadPhoto(const SceneView& view) {
-  is_truncated = false;
-  FreeImage_SetOutputMessage(&NoteMessage);
-  colmap::Bitmap bitmap;
-  const bool is_read = bitmap.Read(view.image_path, /* as_rgb */ false);
-  FreeImage_SetOutputMessage(nullptr);
-  if (!is_read || is_truncated) {
-    throw Failure("The image " + view.image_path +
-                  " cannot be read; is it there, and is it a whole image?");
-  }
-  if (bitmap.Width() != view.photo_width ||
-      bitmap.Height() != view.photo_height) {
-    throw Failure(
-        "The image " + view.image_path + " has " +
-        std::to_string(bitmap.Width()) + "x" + std::to_string(bitmap.Height()) +
-        " pixels, but its camera has " + std::to_string(view.photo_width) +
-        "x" + std::to_string(view.photo_height) +
-        "; make both the same, as image_undistorter does");
-  }
-  if (view.width != view.photo_width || view.height != view.photo_height) {
-    bitmap.Rescale(view.width, view.height);
-  }
-  const std::vector<uint8_t> pixels = bitmap.ConvertToRowMajorArray();
+  const std::vector<uint8_t> pixels =
+      ReadBitmap(view, /* in_color */ false).ConvertToRowMajorArray();
   Map<uint8_t> image(view.width, view.height);
   std::memcpy(image.data(), pixels.data(), image.size());
+  return image;
+}
+
+Map<Rgb> ReadColorPhoto(const SceneView& view) {
+  // The channels are in the order of FreeImage.
+  const std::vector<uint8_t> channels =
+      ReadBitmap(view, /* in_color */ true).ConvertToRowMajorArray();
+  Map<Rgb> image(view.width, view.height);
+  for (size_t i = 0; i < image.size(); ++i) {
+    const uint8_t* pixel = &channels[3 * i];
+    image.data()[i] = {pixel[FI_RGBA_RED], pixel[FI_RGBA_GREEN],
+                       pixel[FI_RGBA_BLUE]};
+  }
   return image;
 }
 

@@ -32,10 +32,11 @@ struct SceneView {
 std::vector<SceneView> SceneViews(const colmap::mvs::Model& model,
                                   int max_image_size);
 
-// Reads the photograph as a grey image of the size that stereo works at. Throws
-// Failure if it is missing, damaged, or not of the size that its camera has.
-// Not to be called from two threads at a time.
+// Read the photograph, in grey or in colour, at the size that stereo works at.
+// Throw Failure if it is missing, damaged, or not of the size that its camera
+// has. Not to be called from two threads at a time.
 Map<uint8_t> ReadPhoto(const SceneView& view);
+Map<Rgb> ReadColorPhoto(const SceneView& view);
 
 }  // namespace tapa
 

@@ -2,8 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <iterator>
 #include <limits>
+#include <new>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "src/colmap/failure.h"
 
@@ -21,9 +26,32 @@ std::string ErrorOf(const PatchMatchOptions& options) {
   return "";
 }
 
+// Bytes of options of TAPA, to tell apart any two of them. Those between the
+// members are zeros.
+std::string TapaBytes(const TapaOptions& options) {
+  std::string bytes(reinterpret_cast<const char*>(&options), sizeof(options));
+  // What the constructor leaves alone lies between the members.
+  alignas(TapaOptions) char zeros[sizeof(TapaOptions)];
+  alignas(TapaOptions) char ones[sizeof(TapaOptions)];
+  std::fill(std::begin(zeros), std::end(zeros), '\0');
+  std::fill(std::begin(ones), std::end(ones), '\1');
+  new (zeros) TapaOptions;
+  new (ones) TapaOptions;
+  for (size_t i = 0; i < bytes.size(); ++i) {
+    if (zeros[i] != ones[i]) {
+      bytes[i] = 0;
+    }
+  }
+  return bytes;
+}
+
+std::string TapaBytes(const PatchMatchOptions& options) {
+  return TapaBytes(EngineOptions(options).tapa);
+}
+
 TEST(EngineOptions, DefaultsAgree) {
   const Options defaults;
-  const Options options = FinalPassOptions(PatchMatchOptions());
+  const Options options = EngineOptions(PatchMatchOptions());
   EXPECT_EQ(ErrorOf(PatchMatchOptions()), "");
   EXPECT_EQ(options.window_radius, defaults.window_radius);
   EXPECT_EQ(options.window_step, defaults.window_step);
@@ -38,10 +66,47 @@ TEST(EngineOptions, DefaultsAgree) {
   EXPECT_EQ(options.num_threads, defaults.num_threads);
 }
 
-TEST(EngineOptions, FirstPassNeitherFiltersNorChecksGeometry) {
-  const Options options = FirstPassOptions(PatchMatchOptions());
+TEST(EngineOptions, TapaDefaultsAgree) {
+  EXPECT_EQ(TapaBytes(PatchMatchOptions()), TapaBytes(TapaOptions()));
+}
+
+void Change(bool* value) { *value = !*value; }
+void Change(int* value) { *value += 3; }
+void Change(double* value) { *value += 0.25; }
+[[maybe_unused]] void Change(std::string* value) { *value += "x"; }
+
+TEST(EngineOptions, EveryTapaOptionIsPassedOn) {
+  std::vector<std::string> names;
+  PatchMatchOptions().Visit(
+      [&](const std::string& name, auto*, const std::string&) {
+        if (name.compare(0, 4, "tapa") == 0 && name != "tapa_debug") {
+          names.push_back(name);
+        }
+      });
+  EXPECT_GE(names.size(), 5);
+  std::set<std::string> results = {TapaBytes(PatchMatchOptions())};
+  for (const std::string& changed : names) {
+    PatchMatchOptions options;
+    options.Visit(
+        [&](const std::string& name, auto* value, const std::string&) {
+          if (name == changed) {
+            Change(value);
+          }
+        });
+    EXPECT_TRUE(results.insert(TapaBytes(options)).second)
+        << changed << " changes nothing, or what another option changes";
+  }
+}
+
+TEST(EngineOptions, FirstPassNeitherFiltersNorRefinesNorChecksGeometry) {
+  PatchMatchOptions given;
+  given.tapa = true;
+  const Options options = EngineOptions(FirstPassOptions(given));
   EXPECT_FALSE(options.geom_consistency);
   EXPECT_FALSE(options.filter);
+  EXPECT_TRUE(options.tapa.enabled);
+  EXPECT_TRUE(options.tapa.fine_superpixels);
+  EXPECT_FALSE(options.tapa.refinement);
 }
 
 TEST(CheckOptions, NamesTheOption) {

@@ -9,9 +9,13 @@
 #include <QLineEdit>
 #include <QProgressDialog>
 #include <QPushButton>
+#include <QTabWidget>
 #include <QTimer>
 #include <iostream>
 #include <set>
+#include <sstream>
+#include <string>
+#include <vector>
 
 #include "mvs/patch_match.h"
 #include "ui/dense_reconstruction_widget.h"
@@ -27,6 +31,17 @@ QPushButton* FindButton(QWidget* widget, const QString& text) {
     }
   }
   return nullptr;
+}
+
+// All of our options, to the last digit.
+std::string OptionsText(const tapa::HostOptions& options) {
+  std::ostringstream text;
+  text.precision(17);
+  options.Visit(
+      [&](const std::string& name, const auto* value, const std::string&) {
+        text << name << " = " << *value << std::endl;
+      });
+  return text.str();
 }
 
 }  // namespace
@@ -51,11 +66,35 @@ int main(int argc, char** argv) {
   for (const QLabel* label : dense_widget.findChildren<QLabel*>()) {
     labels.insert(label->text().toStdString());
   }
-  for (const char* name : {"use_gpu", "num_threads", "seed", "gpu_index"}) {
+  std::vector<std::string> names = {"gpu_index"};
+  options.patch_match_stereo->Visit(
+      [&](const std::string& name, auto*, const std::string&) {
+        names.push_back(name);
+      });
+  for (const std::string& name : names) {
     if (labels.count(name) == 0) {
       std::cerr << "There is no row for the option " << name << std::endl;
       return 1;
     }
+  }
+
+  // Looking at our options changes none, however small it is.
+  options.patch_match_stereo->tapa_textureness_variance = 0.0000125;
+  const std::string before = OptionsText(*options.patch_match_stereo);
+  auto* tabs = dense_widget.findChild<QTabWidget*>();
+  tabs->window()->show();
+  for (int i = 0; i < tabs->count(); ++i) {
+    tabs->setCurrentIndex(i);
+    application.processEvents();
+  }
+  tabs->window()->hide();
+  application.processEvents();
+  const std::string after = OptionsText(*options.patch_match_stereo);
+  if (before != after) {
+    std::cerr << "The options widget has changed options:\n"
+              << before << "now:\n"
+              << after;
+    return 1;
   }
 
   // Naming the workspace enables the button, later, by an event.
