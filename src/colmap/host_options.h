@@ -8,9 +8,10 @@
 namespace tapa {
 
 // The options of dense stereo that COLMAP itself does not have. COLMAP's
-// PatchMatchOptions derive from them, and the command line, project files and
-// the options widget list them through Visit: a new option is a member here, a
-// line there, and a line where it is passed on (engine_options.cc).
+// PatchMatchOptions derive from them, and the command line, project files, the
+// options widget and the record beside the maps (options_record.h) list them
+// through Visit: a new option is a member here, a line there, and a line where
+// it is passed on (engine_options.cc).
 struct HostOptions {
   // Whether to compute on a GPU, if this program can and there is one.
   bool use_gpu = true;

@@ -10,6 +10,7 @@
 #include "mvs/patch_match.h"
 #include "src/colmap/failure.h"
 #include "src/colmap/interrupt.h"
+#include "src/colmap/option_list.h"
 #include "src/colmap/stereo_run.h"
 #include "util/misc.h"
 
@@ -18,37 +19,9 @@ namespace mvs {
 
 void PatchMatchOptions::Print() const {
   PrintHeading2("PatchMatchOptions");
-  const auto print = [](const std::string& name, const auto* value,
-                        const std::string& /* help */) {
-    std::cout << name << ": " << *value << std::endl;
-  };
-#define PRINT_OPTION(option) print(#option, &option, "")
-  PRINT_OPTION(max_image_size);
-  PRINT_OPTION(gpu_index);
-  PRINT_OPTION(depth_min);
-  PRINT_OPTION(depth_max);
-  PRINT_OPTION(window_radius);
-  PRINT_OPTION(window_step);
-  PRINT_OPTION(sigma_spatial);
-  PRINT_OPTION(sigma_color);
-  PRINT_OPTION(num_samples);
-  PRINT_OPTION(ncc_sigma);
-  PRINT_OPTION(min_triangulation_angle);
-  PRINT_OPTION(incident_angle_sigma);
-  PRINT_OPTION(num_iterations);
-  PRINT_OPTION(geom_consistency);
-  PRINT_OPTION(geom_consistency_regularizer);
-  PRINT_OPTION(geom_consistency_max_cost);
-  PRINT_OPTION(filter);
-  PRINT_OPTION(filter_min_ncc);
-  PRINT_OPTION(filter_min_triangulation_angle);
-  PRINT_OPTION(filter_min_num_consistent);
-  PRINT_OPTION(filter_geom_consistency_max_cost);
-  PRINT_OPTION(cache_size);
-  PRINT_OPTION(allow_missing_files);
-  PRINT_OPTION(write_consistency_graph);
-#undef PRINT_OPTION
-  Visit(print);
+  tapa::VisitOptions(*this, [](const std::string& name, const auto& value) {
+    std::cout << name << ": " << value << std::endl;
+  });
 }
 
 PatchMatchController::PatchMatchController(const PatchMatchOptions& options,

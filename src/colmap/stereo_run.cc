@@ -85,6 +85,7 @@ bool StereoRun::Prepare(const std::function<bool()>& stopped) {
                               options_.min_triangulation_angle);
   DropMissing();
   CheckDepthRanges();
+  CheckRecords();
   CheckMaps();
   PrepareFolders();
   std::cout << "Configuration has " << NumViews() << " views." << std::endl;
@@ -186,6 +187,47 @@ void StereoRun::CheckDepthRanges() const {
   }
 }
 
+// Looks at which options made the maps that are there already.
+void StereoRun::CheckRecords() const {
+  for (const Pass pass : {Pass::kPhotometric, Pass::kGeometric}) {
+    if (pass > FinalPass() || !HasMaps(pass)) {
+      continue;
+    }
+    const bool geometric = pass == Pass::kGeometric;
+    const std::string maps =
+        std::string("The ") + (geometric ? "geometric" : "photometric") +
+        " maps in " + location_.StereoPath() + " were made with ";
+    const std::optional<OptionValues> recorded =
+        ReadOptionsRecord(location_.RecordPath(geometric));
+    if (!recorded) {
+      PrintWarning(
+          maps +
+          "options that are not known (by another version of COLMAP?); "
+          "they are kept");
+      continue;
+    }
+    const std::string differences =
+        DescribeDifferences(*recorded, RecordedOptions(pass));
+    if (differences.empty()) {
+      continue;
+    }
+    const auto was_on = [&recorded](const char* name) {
+      const auto found = recorded->find(name);
+      return found != recorded->end() && found->second == "1";
+    };
+    const bool was_final =
+        pass != FinalPass() && (was_on("filter") || was_on("tapa_refinement"));
+    throw Failure(
+        maps + "other options (PatchMatchStereo: " + differences +
+        (was_final ? "; before a geometric pass nothing is filtered" : "") +
+        "); take the same options, name another workspace, or remove all " +
+        (geometric             ? "*.geometric.bin"
+         : pass == FinalPass() ? "*.photometric.bin"
+                               : "*.photometric.bin and *.geometric.bin") +
+        " there to have them computed again");
+  }
+}
+
 // Looks at the maps that are there already.
 void StereoRun::CheckMaps() const {
   for (const ViewIndices& problem : problems_) {
@@ -257,6 +299,20 @@ PatchMatchOptions StereoRun::PassOptions(Pass pass) const {
   return pass == FinalPass() ? options_ : FirstPassOptions(options_);
 }
 
+OptionValues StereoRun::RecordedOptions(Pass pass) const {
+  PatchMatchOptions options = PassOptions(pass);
+  // A limit that no photograph reaches is none.
+  const bool is_limited =
+      std::any_of(views_.begin(), views_.end(), [](const SceneView& view) {
+        return view.width != view.photo_width ||
+               view.height != view.photo_height;
+      });
+  if (!is_limited) {
+    options.max_image_size = -1;
+  }
+  return OptionsOfMaps(options);
+}
+
 std::string StereoRun::MapPath(const std::string& kind, int view,
                                Pass pass) const {
   return location_.MapPath(kind, views_[view].name, pass == Pass::kGeometric);
@@ -265,6 +321,19 @@ std::string StereoRun::MapPath(const std::string& kind, int view,
 bool StereoRun::WritesGraph(Pass pass) const {
   // The pass before the final one does not filter.
   return options_.write_consistency_graph && pass == FinalPass();
+}
+
+bool StereoRun::HasMaps(Pass pass) const {
+  // Views that this run does not compute count as well: the record is about
+  // all maps beside it.
+  for (int view = 0; view < static_cast<int>(views_.size()); ++view) {
+    for (const char* kind : {"depth_maps", "normal_maps"}) {
+      if (ExistsPath(MapPath(kind, view, pass))) {
+        return true;
+      }
+    }
+  }
+  return false;
 }
 
 bool StereoRun::IsDone(int view, Pass pass) const {
@@ -293,6 +362,10 @@ bool StereoRun::IsDone(int view, Pass pass) const {
 bool StereoRun::ComputePass(Pass pass, const std::function<bool()>& stopped) {
   const std::string name =
       pass == Pass::kGeometric ? "geometric " : "photometric ";
+  if (!HasMaps(pass)) {
+    WriteOptionsRecord(location_.RecordPath(pass == Pass::kGeometric),
+                       RecordedOptions(pass));
+  }
   for (size_t i = 0; i < problems_.size(); ++i) {
     if (stopped()) {
       return false;

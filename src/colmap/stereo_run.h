@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mvs/patch_match.h"
+#include "src/colmap/options_record.h"
 #include "src/colmap/problem_config.h"
 #include "src/colmap/progress.h"
 #include "src/colmap/view_cache.h"
@@ -41,6 +42,7 @@ class StereoRun {
   void DropMissing();
   bool DropMissingOnce();
   void CheckDepthRanges() const;
+  void CheckRecords() const;
   void CheckMaps() const;
   bool ReadPhotos(const std::function<bool()>& stopped);
   void PrepareFolders() const;
@@ -48,8 +50,12 @@ class StereoRun {
   Pass FinalPass() const;
   // The options that a pass runs with.
   colmap::mvs::PatchMatchOptions PassOptions(Pass pass) const;
+  // The options that a pass's maps depend on.
+  OptionValues RecordedOptions(Pass pass) const;
   std::string MapPath(const std::string& kind, int view, Pass pass) const;
   bool WritesGraph(Pass pass) const;
+  // Whether there is any map of a pass.
+  bool HasMaps(Pass pass) const;
   // Whether all maps of a view are there. Throws Failure if one is damaged.
   bool IsDone(int view, Pass pass) const;
 

@@ -73,6 +73,11 @@ std::string WorkspaceLocation::MapPath(const std::string& kind,
       image_name + (geometric ? ".geometric.bin" : ".photometric.bin"));
 }
 
+std::string WorkspaceLocation::RecordPath(bool geometric) const {
+  return colmap::JoinPaths(StereoPath(), geometric ? "options.geometric.txt"
+                                                   : "options.photometric.txt");
+}
+
 colmap::mvs::Model ReadWorkspace(const WorkspaceLocation& location) {
   if (!colmap::ExistsDir(location.path)) {
     throw Failure("There is no workspace folder " + location.path +

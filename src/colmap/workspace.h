@@ -24,6 +24,8 @@ struct WorkspaceLocation {
   // kind: depth_maps, normal_maps or consistency_graphs.
   std::string MapPath(const std::string& kind, const std::string& image_name,
                       bool geometric) const;
+  // Record of the options that made the maps of a pass (options_record.h).
+  std::string RecordPath(bool geometric) const;
 };
 
 // Reads the sparse model, and makes the stereo folder of a PMVS workspace.

@@ -170,6 +170,10 @@ class DamagedMaps(tiny.TestCase):
         self.expect_error(path, "48x32", "96x64")
 
     def test_maps_of_another_max_image_size(self):
+        self.expect_error("max_image_size was -1, is 48", max_image_size=48)
+        # Where it is not known what made the maps, their size says it.
+        for which in ("photometric", "geometric"):
+            os.remove(self.path("stereo", "options.%s.txt" % which))
         self.expect_error("96x64", "48x32", max_image_size=48)
 
     def test_map_of_a_source_that_is_not_computed(self):

@@ -65,18 +65,37 @@ def _render(center_x, width, height):
     return bytes(pixels)
 
 
-def write_png(path, width, height, pixels):
+def write_png(path, width, height, pixels, channels=1):
     def chunk(kind, data):
         return (struct.pack(">I", len(data)) + kind + data +
                 struct.pack(">I", zlib.crc32(kind + data)))
 
-    rows = b"".join(b"\0" + pixels[row * width:(row + 1) * width]
+    stride = width * channels
+    rows = b"".join(b"\0" + pixels[row * stride:(row + 1) * stride]
                     for row in range(height))
     with open(path, "wb") as file:
         file.write(b"\x89PNG\r\n\x1a\n" +
-                   chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 0,
-                                              0, 0, 0)) +
+                   chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8,
+                                              0 if channels == 1 else 2, 0, 0,
+                                              0)) +
                    chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
+
+
+def color_halves(path):
+    """Gives a grey image of write_png a red and a blue half."""
+    with open(path, "rb") as file:
+        data = file.read()
+    width, height = struct.unpack(">II", data[16:24])
+    begin = data.index(b"IDAT")
+    size, = struct.unpack(">I", data[begin - 4:begin])
+    rows = zlib.decompress(data[begin + 4:begin + 4 + size])
+    pixels = bytearray()
+    for row in range(height):
+        for col in range(width):
+            grey = rows[row * (width + 1) + 1 + col]
+            pixels += bytes((grey, grey // 2, grey // 4) if col < width / 2
+                            else (grey // 4, grey // 2, grey))
+    write_png(path, width, height, bytes(pixels), channels=3)
 
 
 def make_model(path, names, width=WIDTH, height=HEIGHT, num_points=60,

@@ -1,0 +1,268 @@
+"""TAPA in the program: its options, and the record of a workspace's options."""
+
+import os
+import unittest
+
+import tiny_workspace as tiny
+
+SWITCHES = ("tapa_texture_weighting", "tapa_fine_superpixels",
+            "tapa_coarse_superpixels", "tapa_refinement")
+
+
+def record_path(workspace, which="geometric", stereo="stereo"):
+    return os.path.join(workspace, stereo, "options.%s.txt" % which)
+
+
+def read_record(workspace, which="geometric"):
+    with open(record_path(workspace, which)) as file:
+        lines = [line for line in file.read().splitlines()
+                 if not line.startswith("#")]
+    return dict(line.split(" = ") for line in lines)
+
+
+class Switches(tiny.TestCase):
+
+    def setUp(self):
+        super().setUp()
+        self.names = tiny.make_workspace(self.folder)
+
+    def run_with(self, name, **options):
+        """Files of a run in a workspace of its own."""
+        workspace = self.path(name)
+        tiny.make_workspace(workspace)
+        self.assert_success(tiny.run_stereo(workspace, num_iterations=2,
+                                            **options))
+        for view in self.names:
+            width, height, depths = tiny.read_map(
+                tiny.map_path(workspace, view))
+            self.assertEqual((width, height), (tiny.WIDTH, tiny.HEIGHT))
+            self.assertGreater(sum(depth > 0 for depth in depths),
+                               len(depths) / 4)
+        return tiny.snapshot(workspace)
+
+    def test_every_switch(self):
+        maps = {"plain": self.run_with("plain"),
+                "all": self.run_with("all", tapa=1),
+                "again": self.run_with("again", tapa=1)}
+        self.assertEqual(maps["all"], maps["again"])
+        for switch in SWITCHES:
+            maps[switch] = self.run_with(switch, tapa=1, **{switch: 0})
+        name = "depth_maps/%s.geometric.bin" % self.names[1]
+        contents = {case: maps[case][name] for case in maps
+                    if case != "again"}
+        self.assertEqual(len(set(contents.values())), len(contents),
+                         "a switch does nothing")
+        self.assertEqual(read_record(self.path("plain"))["tapa"], "0")
+        self.assertEqual(read_record(self.path("all"))["tapa"], "1")
+
+    def test_refinement_is_for_the_last_pass(self):
+        maps = self.run_with("all", tapa=1)
+        others = self.run_with("without", tapa=1, tapa_refinement=0)
+        name = "depth_maps/%s.%s.bin"
+        for view in self.names:
+            self.assertEqual(maps[name % (view, "photometric")],
+                             others[name % (view, "photometric")])
+
+    def test_everything_off_is_without_filter(self):
+        maps = self.run_with("off", tapa=1, **{s: 0 for s in SWITCHES})
+        others = self.run_with("plain", filter=0)
+        name = "depth_maps/%s.geometric.bin" % self.names[0]
+        self.assertEqual(maps[name], others[name])
+
+    def test_colours_matter(self):
+        workspace = self.path("colours")
+        tiny.make_workspace(workspace)
+        grey = self.run_with("grey", tapa=1)
+        for name in self.names:
+            tiny.color_halves(os.path.join(workspace, "images", name))
+        self.assert_success(tiny.run_stereo(workspace, num_iterations=2,
+                                            tapa=1))
+        name = "depth_maps/%s.geometric.bin" % self.names[1]
+        self.assertNotEqual(grey[name], tiny.snapshot(workspace)[name])
+
+    def test_other_sizes_and_windows(self):
+        self.assert_success(tiny.run_stereo(self.folder, tapa=1,
+                                            max_image_size=40,
+                                            geom_consistency=0))
+        width, height, _ = tiny.read_map(tiny.map_path(
+            self.folder, self.names[0], which="photometric"))
+        self.assertEqual(width, 40)
+
+    def test_project_file(self):
+        with open(self.path("project.ini"), "w") as file:
+            file.write("workspace_path = %s\n[PatchMatchStereo]\n"
+                       "num_iterations = 1\ntapa = true\n"
+                       "tapa_coarse_superpixels = false\n"
+                       "tapa_textureness_variance = 1.25e-05\n" % self.folder)
+        result = tiny.run([tiny.COLMAP, "patch_match_stereo",
+                           "--project_path", self.path("project.ini")])
+        self.assert_success(result)
+        self.assertIn("tapa: 1\n", result.stdout)
+        record = read_record(self.folder)
+        self.assertEqual(record["tapa"], "1")
+        self.assertEqual(record["tapa_coarse_superpixels"], "0")
+        self.assertEqual(float(record["tapa_textureness_variance"]), 1.25e-5)
+
+    def test_new_project_file(self):
+        # What the program writes itself it reads again.
+        result = tiny.run([tiny.COLMAP, "project_generator", "--output_path",
+                           self.path("project.ini")])
+        self.assert_success(result)
+        with open(self.path("project.ini")) as file:
+            text = file.read()
+        for switch in SWITCHES:
+            self.assertIn("%s=true" % switch, text)
+        self.assertIn("\ntapa=false\n", text)
+        text = text.replace("\ntapa=false\n", "\ntapa=true\n")
+        text = text.replace("\nnum_iterations=5\n", "\nnum_iterations=1\n")
+        # Options of other commands are not known to this one.
+        section = text[text.index("[PatchMatchStereo]\n"):].split("\n[")[0]
+        with open(self.path("project.ini"), "w") as file:
+            file.write("workspace_path = %s\n%s\n" % (self.folder, section))
+        self.assert_success(tiny.run([tiny.COLMAP, "patch_match_stereo",
+                                      "--project_path",
+                                      self.path("project.ini")]))
+        # The same as the defaults on the command line.
+        self.assert_success(tiny.run([tiny.COLMAP, "patch_match_stereo",
+                                      "--workspace_path", self.folder,
+                                      "--PatchMatchStereo.num_iterations", "1",
+                                      "--PatchMatchStereo.tapa", "1"]))
+
+
+class Record(tiny.TestCase):
+    """A workspace's maps remember the options that made them."""
+
+    def setUp(self):
+        super().setUp()
+        self.names = tiny.make_workspace(self.folder)
+
+    def expect_refusal(self, *texts, **options):
+        before = tiny.snapshot(self.folder)
+        result = tiny.run_stereo(self.folder, **options)
+        self.assert_one_error(result, "made with other options", *texts)
+        self.assertEqual(before, tiny.snapshot(self.folder))
+
+    def test_other_options(self):
+        self.assert_success(tiny.run_stereo(self.folder))
+        self.expect_refusal("photometric maps", "seed was 0, is 1", seed=1)
+        self.expect_refusal("tapa was 0, is 1", tapa=1)
+        self.expect_refusal("max_image_size was -1, is 48", max_image_size=48)
+        self.expect_refusal("num_samples was 5, is 6; sigma_spatial was -1, is"
+                            " 2.5", num_samples=6, sigma_spatial=2.5)
+        # Only the second pass depends on these.
+        self.expect_refusal("geometric maps", "filter was 1, is 0", filter=0)
+        self.expect_refusal("geometric maps",
+                            "geom_consistency_max_cost was 3, is 2",
+                            geom_consistency_max_cost=2)
+
+    def test_other_options_of_tapa(self):
+        self.assert_success(tiny.run_stereo(self.folder, tapa=1))
+        self.expect_refusal("tapa was 1, is 0")
+        self.expect_refusal("tapa_fine_superpixels was 1, is 0", tapa=1,
+                            tapa_fine_superpixels=0)
+        self.expect_refusal("geometric maps", "tapa_refinement was 1, is 0",
+                            tapa=1, tapa_refinement=0)
+        self.expect_refusal("tapa_textureness_variance was 5e-05, is 6e-05",
+                            tapa=1, tapa_textureness_variance=0.00006)
+
+    def test_unfinished_run(self):
+        self.assert_success(tiny.run_stereo(self.folder))
+        for name in self.names[1:]:
+            for which in ("photometric", "geometric"):
+                os.remove(tiny.map_path(self.folder, name, which=which))
+        self.expect_refusal("seed was 0, is 1", seed=1)
+        self.assert_success(tiny.run_stereo(self.folder))
+
+    def test_views_that_are_not_in_the_list(self):
+        # The record is about all maps beside it.
+        tiny.make_config(self.folder, self.names[:1])
+        self.assert_success(tiny.run_stereo(self.folder, geom_consistency=0))
+        tiny.make_config(self.folder, self.names[1:])
+        self.expect_refusal("seed was 0, is 1", geom_consistency=0, seed=1)
+        self.assert_success(tiny.run_stereo(self.folder, geom_consistency=0))
+
+    def test_options_that_change_no_map(self):
+        self.assert_success(tiny.run_stereo(self.folder))
+        os.remove(tiny.map_path(self.folder, self.names[1]))
+        # 0.2 is COLMAP's default; no photograph is as large as the limit.
+        result = tiny.run_stereo(self.folder, num_threads=1, use_gpu=0,
+                                 cache_size=1, allow_missing_files=1,
+                                 sigma_color=0.2, tapa_fill_radius=7,
+                                 max_image_size=2000)
+        self.assert_success(result)
+        self.assertNotIn("WARNING", result.stdout)
+
+    def test_maps_removed(self):
+        self.assert_success(tiny.run_stereo(self.folder))
+        for name in self.names:
+            for kind in ("depth_maps", "normal_maps"):
+                for which in ("photometric", "geometric"):
+                    os.remove(tiny.map_path(self.folder, name, kind, which))
+        self.assert_success(tiny.run_stereo(self.folder, seed=1))
+        for which in ("photometric", "geometric"):
+            self.assertEqual(read_record(self.folder, which)["seed"], "1")
+
+    def test_photometric_maps_of_a_last_pass(self):
+        # They are filtered, those before a geometric pass are not.
+        self.assert_success(tiny.run_stereo(self.folder, geom_consistency=0))
+        self.expect_refusal("filter was 1, is 0",
+                            "before a geometric pass nothing is filtered")
+
+    def test_photometric_maps_of_a_first_pass(self):
+        self.assert_success(tiny.run_stereo(self.folder))
+        self.expect_refusal("filter was 0, is 1", geom_consistency=0)
+        # Without the filter it is the same pass.
+        result = tiny.run_stereo(self.folder, geom_consistency=0, filter=0)
+        self.assert_success(result)
+        self.assertNotIn("WARNING", result.stdout)
+
+    def test_maps_of_unknown_origin(self):
+        self.assert_success(tiny.run_stereo(self.folder))
+        expected = tiny.snapshot(self.folder)
+        os.remove(record_path(self.folder, "photometric"))
+        os.remove(record_path(self.folder, "geometric"))
+        result = tiny.run_stereo(self.folder, seed=1)
+        self.assert_success(result)
+        warnings = [line for line in result.stdout.splitlines()
+                    if line.startswith("WARNING")]
+        self.assertEqual(len(warnings), 2, result.stdout)
+        self.assertIn("not known", warnings[0])
+        actual = tiny.snapshot(self.folder)
+        self.assertEqual(actual, {name: expected[name] for name in expected
+                                  if not name.startswith("options.")})
+
+    def test_damaged_record(self):
+        self.assert_success(tiny.run_stereo(self.folder))
+        path = record_path(self.folder, "photometric")
+        for content in (b"", b"seed = 0", b"\0\xff\n"):
+            with open(path, "wb") as file:
+                file.write(content)
+            result = tiny.run_stereo(self.folder)
+            self.assert_one_error(result, path, "damaged" if content
+                                  else "empty")
+
+    def test_it_is_the_same_after_every_run(self):
+        self.assert_success(tiny.run_stereo(self.folder))
+        before = tiny.snapshot(self.folder)
+        self.assert_success(tiny.run_stereo(self.folder))
+        self.assertEqual(before, tiny.snapshot(self.folder))
+
+
+class Resume(tiny.TestCase):
+
+    def test_goes_on(self):
+        names = tiny.make_workspace(self.folder)
+        options = {"tapa": 1, "num_iterations": 2}
+        self.assert_success(tiny.run_stereo(self.folder, **options))
+        expected = tiny.snapshot(self.folder)
+        for name in names[1:3]:
+            for kind in ("depth_maps", "normal_maps"):
+                os.remove(tiny.map_path(self.folder, name, kind))
+        os.remove(tiny.map_path(self.folder, names[3], which="photometric"))
+        result = tiny.run_stereo(self.folder, num_threads=1, **options)
+        self.assert_success(result)
+        self.assertEqual(expected, tiny.snapshot(self.folder))
+
+
+if __name__ == "__main__":
+    unittest.main()
