@@ -38,6 +38,33 @@ class Automatic(tiny.TestCase):
             distance[which] = abs(self.num_points(path) - num_points)
         self.assertLess(10 * distance["geometric"], distance["photometric"])
 
+    def test_tapa(self):
+        result = self.reconstruct("extreme", ("--use_gpu", "0", "--tapa", "1"))
+        self.assertEqual(result.returncode, 0, result.stdout)
+        self.assertIn("\ntapa: 1\n", result.stdout)
+        # Half and twice of what it is without.
+        self.assertIn("\nmax_reproj_error: 1\n", result.stdout)
+        self.assertIn("\nmax_normal_error: 20\n", result.stdout)
+        with open(os.path.join(self.dense, "stereo",
+                               "options.geometric.txt")) as file:
+            self.assertIn("\ntapa = 1\n", file.read())
+        tiny.read_map(tiny.map_path(self.dense, self.names[0]))
+        self.assertGreater(
+            self.num_points(os.path.join(self.dense, "fused.ply")), 0)
+
+    def test_other_options_than_before(self):
+        result = self.reconstruct("low")
+        self.assertEqual(result.returncode, 0, result.stdout)
+        self.assertIn("\nmax_reproj_error: 2\n", result.stdout)
+        for name in os.listdir(self.dense):
+            if name.startswith(("fused", "meshed")):
+                os.remove(os.path.join(self.dense, name))
+        result = self.reconstruct("low", ("--use_gpu", "0", "--tapa", "1"))
+        self.assertEqual(result.returncode, 1, result.stdout)
+        self.assertIn("tapa was 0, is 1", result.stdout)
+        self.assertFalse(os.path.exists(os.path.join(self.dense,
+                                                     "fused.ply")))
+
     def test_does_without_a_display(self):
         environment = {name: value for name, value in os.environ.items()
                        if name not in ("DISPLAY", "WAYLAND_DISPLAY",
