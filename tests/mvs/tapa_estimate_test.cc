@@ -259,14 +259,11 @@ TEST(Tapa, RecordsWhatItDid) {
     for (size_t i = 0; i < record.chosen.size(); ++i) {
       ASSERT_LT(record.chosen.data()[i], kNumHypotheses);
       num_planar += record.chosen.data()[i] >= kFinePlane;
-      // Refinement removes, then fills.
+      // Refinement begins by removing.
       const float swept = record.swept_depth.data()[i];
       const float filtered = record.filtered_depth.data()[i];
       EXPECT_GT(swept, 0);
       EXPECT_TRUE(filtered == 0 || filtered == swept);
-      if (filtered > 0) {
-        EXPECT_EQ(estimate->depth.data()[i], filtered);
-      }
     }
     EXPECT_GT(num_planar, 1000);
 
