@@ -111,6 +111,11 @@ Options EngineOptions(const PatchMatchOptions& options) {
   TAPA_PASS_ON(speckle_continuity);
   TAPA_PASS_ON(fill_radius);
   TAPA_PASS_ON(fill_rounds);
+  TAPA_PASS_ON(completion);
+  TAPA_PASS_ON(completion_agreement);
+  TAPA_PASS_ON(completion_radius);
+  TAPA_PASS_ON(completion_textureness);
+  TAPA_PASS_ON(completion_fill_share);
 #undef TAPA_PASS_ON
   return result;
 }

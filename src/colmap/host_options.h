@@ -63,6 +63,18 @@ struct HostOptions {
   // How often the fill is repeated.
   int tapa_fill_rounds = 1;
 
+  // Whether to believe only estimates that source views support, and to
+  // complete the others with planes: part of the refinement.
+  bool tapa_completion = true;
+  // Share of the estimates nearby that have to lie on a plane, 0 to 1.
+  double tapa_completion_agreement = 0.5;
+  // What is nearby: half size of a square, as a share of the image's width.
+  double tapa_completion_radius = 0.1;
+  // Below this textureness planes replace supported estimates, too.
+  double tapa_completion_textureness = 0.75;
+  // Share of a window's pixels that have to speak for a fill, 0 to 1.
+  double tapa_completion_fill_share = 0.5;
+
   // Calls visit(name, pointer to the member, help) for every option. Members
   // are bool, int, double or std::string.
   template <typename Visitor>
@@ -122,6 +134,21 @@ struct HostOptions {
             "pixels"));
     visit(S("tapa_fill_rounds"), &options->tapa_fill_rounds,
           S("How often the fill is repeated"));
+    visit(S("tapa_completion"), &options->tapa_completion,
+          S("Believe only estimates that source views support, and complete "
+            "the others with planes (beyond the paper)"));
+    visit(S("tapa_completion_agreement"), &options->tapa_completion_agreement,
+          S("Share of the estimates nearby that have to lie on a plane, 0 to "
+            "1"));
+    visit(S("tapa_completion_radius"), &options->tapa_completion_radius,
+          S("What is nearby: half size of a square, as a share of the image's "
+            "width"));
+    visit(S("tapa_completion_textureness"),
+          &options->tapa_completion_textureness,
+          S("Below this textureness planes replace supported estimates, too"));
+    visit(S("tapa_completion_fill_share"), &options->tapa_completion_fill_share,
+          S("Share of a window's pixels that have to speak for a fill, 0 to "
+            "1"));
   }
 };
 

@@ -83,6 +83,9 @@ bool IsUsed(const std::string& name, const PatchMatchOptions& options) {
         {"tapa_plane_", superpixels},
         {"tapa_relative_plane_", superpixels},
         {"tapa_fill_", options.tapa_refinement},
+        {"tapa_completion", options.tapa_refinement},
+        {"tapa_completion_",
+         options.tapa_refinement && options.tapa_completion},
     };
     for (const auto& [start, is_on] : parts) {
       if (StartsWith(name, start) && !is_on) {

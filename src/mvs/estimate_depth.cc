@@ -15,6 +15,11 @@ namespace {
 
 constexpr int kSweepsPerIteration = 4;
 
+// Textureness, labels and planes of two segmentations, and the chosen
+// hypothesis: 13; between iterations a depth map (4), connected regions (8) and
+// points (12).
+constexpr size_t kTapaBytesPerPixel = 37;
+
 // Number of the random draws before the first sweep.
 constexpr uint32_t kInitialSweep = 0xFFFFFFFFu;
 
@@ -61,6 +66,10 @@ void CheckProblem(const Options& options, const Problem& problem) {
     Fail("the depth range must be positive and not empty");
   }
   const Map<uint8_t>& image = *problem.reference.image;
+  if (options.tapa.enabled && problem.reference_color != nullptr &&
+      !HasSize(*problem.reference_color, image)) {
+    Fail("the colour photograph has another size than the grey one");
+  }
   if (options.geom_consistency &&
       !(HasSize(problem.depth, image) && HasSize(problem.normal, image))) {
     Fail(
@@ -126,6 +135,14 @@ SweepParams MakeSweepParams(const Options& options, const Problem& problem) {
   params.filter_min_num_consistent =
       std::min(options.filter_min_num_consistent,
                static_cast<int>(problem.sources.size()));
+  // TAPA looks at the filter's verdict itself; patches without texture have no
+  // photometric support, so it does not count.
+  if (options.tapa.enabled) {
+    params.filter_min_num_consistent = 0;
+    if (options.geom_consistency) {
+      params.filter_min_prob = 0;
+    }
+  }
   return params;
 }
 
@@ -138,7 +155,7 @@ void AdvanceSweepParams(const Options& options, int iteration, int sweep,
       std::pow(2.0, -(iteration + sweep / double{kSweepsPerIteration})));
   const int num_sweeps = options.num_iterations * kSweepsPerIteration;
   params->prev_prob_weight = static_cast<float>(params->index) / num_sweeps;
-  params->filter = options.filter && !options.tapa.enabled &&
+  params->filter = (options.filter || options.tapa.enabled) &&
                    params->index + 1 == static_cast<uint32_t>(num_sweeps);
 }
 
@@ -149,7 +166,7 @@ std::optional<Estimate> EstimateDepth(const Options& options, Problem problem,
   options.Check();
   CheckProblem(options, problem);
 
-  const std::unique_ptr<Backend> backend = MakeCpuBackend(options, problem);
+  std::unique_ptr<Backend> backend = MakeCpuBackend(options, problem);
 
   // The first costs take about as long as one sweep.
   const int num_steps = options.num_iterations * kSweepsPerIteration + 1;
@@ -169,7 +186,7 @@ std::optional<Estimate> EstimateDepth(const Options& options, Problem problem,
 
   std::unique_ptr<TapaStages> tapa;
   if (options.tapa.enabled) {
-    tapa = std::make_unique<TapaStages>(options, problem);
+    tapa = std::make_unique<TapaStages>(options, problem, control);
     tapa->Begin(backend.get());
   }
 
@@ -187,8 +204,13 @@ std::optional<Estimate> EstimateDepth(const Options& options, Problem problem,
     }
   }
   Estimate estimate = backend->TakeResult();
+  // What follows needs the memory of its images and costs.
+  backend.reset();
   if (tapa) {
     tapa->Refine(&estimate);
+    if (control.stopped && control.stopped()) {
+      return std::nullopt;
+    }
     if (control.record != nullptr) {
       *control.record = tapa->TakeRecord();
     }
@@ -199,9 +221,15 @@ std::optional<Estimate> EstimateDepth(const Options& options, Problem problem,
 size_t EstimateDepthMemory(const Options& options, const Problem& problem) {
   const size_t num_sources = problem.sources.size();
   const size_t pixels = problem.reference.image->size();
+  const bool tapa = options.tapa.enabled;
   size_t bytes = pixels * (sizeof(float) + sizeof(Vec3) + sizeof(uint8_t) +
-                           2 * sizeof(uint16_t) * num_sources +
-                           (options.filter ? (num_sources + 7) / 8 : 0));
+                           2 * sizeof(uint16_t) * num_sources);
+  if (options.filter || tapa) {
+    bytes += pixels * ((num_sources + 7) / 8);
+  }
+  if (tapa) {
+    bytes += pixels * kTapaBytesPerPixel;
+  }
   for (const View& view : problem.sources) {
     bytes += view.image->size() * sizeof(uint16_t);
   }

@@ -41,8 +41,9 @@ struct Estimate {
   // Probability that source view m sees a pixel, 0 to 1, at
   // [pixel * sources + m], in fixed point: value / 65535.
   UninitializedVector<uint16_t> selection_prob;
-  // With Options::filter: bit m % 8 of byte [pixel * ceil(sources / 8) + m / 8]
-  // says whether source view m supports the estimate.
+  // With Options::filter or TAPA: bit m % 8 of byte [pixel * ceil(sources / 8)
+  // + m / 8] says whether source view m supports the estimate. TAPA's geometric
+  // pass looks at depths and angles only, not at selection probabilities.
   std::vector<uint8_t> consistent;
   // With TAPA: the hypothesis (sweep.h) that each pixel chose last.
   Map<uint8_t> chosen;
@@ -73,7 +74,8 @@ std::optional<Estimate> EstimateDepth(const Options& options, Problem problem,
 // the views. For n source views of w x h pixels:
 //
 //   w h (16 + 1 + 4 n) for the estimate, the image, the costs and probabilities
-//   w h ceil(n / 8)    for Estimate::consistent, with Options::filter
+//   w h ceil(n / 8)    for Estimate::consistent, with Options::filter or TAPA
+//   37 w h             for TAPA
 //   2 w h n            for the source images
 //
 // The views themselves need w h (1 + n) and, in the geometric pass, 4 w h n.

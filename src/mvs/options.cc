@@ -1,5 +1,6 @@
 #include "src/mvs/options.h"
 
+#include <cmath>
 #include <sstream>
 #include <stdexcept>
 
@@ -16,6 +17,48 @@ void CheckRange(const char* name, T value, bool valid, const char* range) {
 }
 
 }  // namespace
+
+// TAPA's fields are called by the names that they have on the command line.
+#define TAPA_CHECK_FIELD(name, condition, range) \
+  CheckRange("tapa_" #name, name, condition, range)
+
+void TapaOptions::Check() const {
+  const auto is_share = [](double value) { return value >= 0 && value <= 1; };
+  const auto is_finite_positive = [](double value) {
+    return value > 0 && std::isfinite(value);
+  };
+  TAPA_CHECK_FIELD(textureness_variance,
+                   is_finite_positive(textureness_variance), "positive");
+  TAPA_CHECK_FIELD(min_textureness, min_textureness > 0 && min_textureness <= 1,
+                   "above 0 and at most 1");
+  TAPA_CHECK_FIELD(weight_range, is_share(weight_range), "from 0 to 1");
+  TAPA_CHECK_FIELD(fine_divisor, is_finite_positive(fine_divisor), "positive");
+  TAPA_CHECK_FIELD(coarse_divisor, is_finite_positive(coarse_divisor),
+                   "positive");
+  TAPA_CHECK_FIELD(plane_distance, std::isfinite(plane_distance),
+                   "a number (not positive: relative)");
+  TAPA_CHECK_FIELD(relative_plane_distance,
+                   is_finite_positive(relative_plane_distance), "positive");
+  TAPA_CHECK_FIELD(speckle_size, is_share(speckle_size), "from 0 to 1");
+  TAPA_CHECK_FIELD(speckle_continuity,
+                   speckle_continuity >= 0 && std::isfinite(speckle_continuity),
+                   "at least 0");
+  TAPA_CHECK_FIELD(fill_radius, fill_radius >= 0 && fill_radius <= 100,
+                   "from 0 to 100");
+  TAPA_CHECK_FIELD(fill_rounds, fill_rounds >= 0 && fill_rounds <= 1000,
+                   "from 0 to 1000");
+  TAPA_CHECK_FIELD(completion_agreement, is_share(completion_agreement),
+                   "from 0 to 1");
+  TAPA_CHECK_FIELD(completion_radius, is_share(completion_radius),
+                   "from 0 to 1");
+  TAPA_CHECK_FIELD(completion_textureness,
+                   completion_textureness >= 0 && completion_textureness <= 2,
+                   "from 0 to 2");
+  TAPA_CHECK_FIELD(completion_fill_share, is_share(completion_fill_share),
+                   "from 0 to 1");
+}
+
+#undef TAPA_CHECK_FIELD
 
 #define TAPA_CHECK_OPTION(name, condition, range) \
   CheckRange(#name, name, condition, range)
@@ -55,6 +98,7 @@ void Options::Check() const {
       num_threads,
       num_threads == -1 || (num_threads >= 1 && num_threads <= 1024),
       "-1 (one per core) or from 1 to 1024");
+  tapa.Check();
 }
 
 #undef TAPA_CHECK_OPTION

@@ -48,6 +48,23 @@ struct TapaOptions {
   int fill_radius = 5;
   // How often the fill is repeated: it reaches fill_radius pixels each time.
   int fill_rounds = 1;
+
+  // Beyond the paper: of the estimates only those stay that enough source views
+  // support; the planes of superpixels replace the others (docs/tapa.md).
+  bool completion = true;
+  // Share of the estimates nearby that have to lie on the plane, 0 to 1.
+  double completion_agreement = 0.5;
+  // What is nearby: half size of a square, as a share of the image's width.
+  double completion_radius = 0.1;
+  // Below this textureness planes replace supported estimates, too.
+  double completion_textureness = 0.75;
+  // Share of a window's pixels that have to speak for the fill of a missing
+  // one, 0 to 1. Without completion any will do, as in the paper.
+  double completion_fill_share = 0.5;
+
+  // Throws std::invalid_argument that names the option, with the prefix tapa_,
+  // and its valid range.
+  void Check() const;
 };
 
 // Parameters of one depth map estimation. The defaults are COLMAP's

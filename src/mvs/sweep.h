@@ -222,6 +222,20 @@ TAPA_INLINE bool IsVisible(const Plane& plane, const Vec3& ray) {
   return plane.depth > 0.0f && Dot(plane.normal, ray) < 0.0f;
 }
 
+// Weighted geometric costs of a hypothesis, summed over the drawn views.
+TAPA_INLINE float SumGeometricCost(const SweepParams& params,
+                                   const CostWeights& weights,
+                                   const float* geom_cost,
+                                   const PixelScratch& s) {
+  const float weight = weights.geometric * params.geom_weight;
+  float sum = 0.0f;
+  for (int k = 0; k < s.num_distinct; ++k) {
+    const int m = s.drawn[k];
+    sum += s.num_drawn[m] * weight * geom_cost[m];
+  }
+  return sum;
+}
+
 // Summed cost of hypothesis i over the drawn views. Costs are not negative, so
 // the sum only grows: once it exceeds `limit` the hypothesis cannot win any
 // more, and the rest of its views need not be measured.
@@ -231,15 +245,10 @@ TAPA_INLINE float SumCost(const SweepParams& params, const RefCamera& camera,
                           float row, float col, const Plane& plane,
                           const Vec3& ray, int i, const CostWeights& weights,
                           float limit, PixelScratch* s) {
-  float sum = 0.0f;
-  if (params.geometric) {
-    const float* geom = s->geom_cost[DepthIndex(i)];
-    const float geom_weight = weights.geometric * params.geom_weight;
-    for (int k = 0; k < s->num_distinct; ++k) {
-      const int m = s->drawn[k];
-      sum += s->num_drawn[m] * geom_weight * geom[m];
-    }
-  }
+  float sum =
+      params.geometric
+          ? SumGeometricCost(params, weights, s->geom_cost[DepthIndex(i)], *s)
+          : 0.0f;
   const Vec3 h = HomographyVector(camera, plane, ray);
   for (int k = 0; k < s->num_distinct && sum <= limit; ++k) {
     const int m = s->drawn[k];
@@ -318,15 +327,14 @@ TAPA_INLINE Choice SweepPixel(const SweepParams& params,
   }
 
   int best = kCurrent;
-  float best_cost = 0.0f;
   const CostWeights& own = guide.weights.own;
+  // Added up like those of the other hypotheses, so that equal costs are equal.
+  float best_cost = params.geometric
+                        ? SumGeometricCost(params, own, s->geom_cost[0], *s)
+                        : 0.0f;
   for (int k = 0; k < s->num_distinct; ++k) {
     const int m = s->drawn[k];
     best_cost += s->num_drawn[m] * own.photometric * s->cost[m];
-    if (params.geometric) {
-      best_cost += s->num_drawn[m] * own.geometric * params.geom_weight *
-                   s->geom_cost[0][m];
-    }
   }
   for (int i = kCurrent + 1; i < kNumHypotheses; ++i) {
     if (!IsVisible(planes[i], ray)) {

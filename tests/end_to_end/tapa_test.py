@@ -128,6 +128,18 @@ class Switches(tiny.TestCase):
                                       "--PatchMatchStereo.num_iterations", "1",
                                       "--PatchMatchStereo.tapa", "1"]))
 
+    def test_out_of_range(self):
+        for name, value in (("tapa_min_textureness", 0),
+                            ("tapa_weight_range", 2),
+                            ("tapa_fine_divisor", 0),
+                            ("tapa_coarse_divisor", -1),
+                            ("tapa_fill_radius", -1),
+                            ("tapa_completion_agreement", 1.5),
+                            ("tapa_textureness_variance", "nan")):
+            with self.subTest(name=name, value=value):
+                result = tiny.run_stereo(self.folder, tapa=1, **{name: value})
+                self.assert_one_error(result, "PatchMatchStereo." + name)
+
 
 class Record(tiny.TestCase):
     """A workspace's maps remember the options that made them."""

@@ -559,7 +559,7 @@ void ExpectPlanesToWinOnAFlatPatch(bool geometric) {
 
 TEST(Sweep, OnAFlatPatchPlanesWin) { ExpectPlanesToWinOnAFlatPatch(false); }
 
-TEST(Sweep, DISABLED_OnAFlatPatchPlanesWinInTheGeometricPass) {
+TEST(Sweep, OnAFlatPatchPlanesWinInTheGeometricPass) {
   ExpectPlanesToWinOnAFlatPatch(true);
 }
 

@@ -411,7 +411,7 @@ TEST(Tapa, GeometricPassAcceptsABadStart) {
   ExpectSound(problem, *from_nothing);
 }
 
-TEST(Tapa, DISABLED_RejectsAPhotographOfAnotherSize) {
+TEST(Tapa, RejectsAPhotographOfAnotherSize) {
   const SyntheticPlane scene{SyntheticOptions()};
   Problem problem = scene.problem();
   for (const Map<Rgb>& color :

@@ -19,7 +19,7 @@ class CpuBackend : public Backend {
  public:
   CpuBackend(const Options& options, const Problem& problem)
       : data_(options, problem),
-        state_(data_, options.filter),
+        state_(data_, options.filter || options.tapa.enabled),
         team_(EffectiveNumThreads(options.num_threads)) {
     if (options.tapa.enabled) {
       state_.chosen = Map<uint8_t>(data_.width, data_.height);

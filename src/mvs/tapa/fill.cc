@@ -65,7 +65,8 @@ void CollectSamples(const Weights& weights, const Map<uint8_t>& image,
 }
 
 // Depth 0 if the samples give no estimate.
-Plane MeanOfFullestBin(const std::vector<Sample>& samples, const Vec3& ray) {
+Plane MeanOfFullestBin(const std::vector<Sample>& samples, const Vec3& ray,
+                       double min_size) {
   const auto by_depth = [](const Sample& a, const Sample& b) {
     return a.depth < b.depth;
   };
@@ -85,6 +86,10 @@ Plane MeanOfFullestBin(const std::vector<Sample>& samples, const Vec3& ray) {
   }
   const int fullest =
       static_cast<int>(std::max_element(sizes, sizes + kNumBins) - sizes);
+
+  if (sizes[fullest] < min_size) {
+    return Plane();
+  }
 
   double sum = 0;
   double depth = 0;
@@ -114,6 +119,8 @@ int FillMissing(const FillOptions& options, const RefCamera& camera,
     Plane plane;
   };
   const Weights weights(options);
+  const double min_size =
+      options.min_share * (2 * options.radius + 1) * (2 * options.radius + 1);
   std::vector<Sample> samples;
   std::vector<Fill> fills;
   int num_filled = 0;
@@ -128,7 +135,8 @@ int FillMissing(const FillOptions& options, const RefCamera& camera,
         if (samples.empty()) {
           continue;
         }
-        const Plane plane = MeanOfFullestBin(samples, camera.Ray(row, col));
+        const Plane plane =
+            MeanOfFullestBin(samples, camera.Ray(row, col), min_size);
         if (plane.depth > 0) {
           fills.push_back({row, col, plane});
         }

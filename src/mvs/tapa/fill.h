@@ -13,6 +13,8 @@ struct FillOptions {
   int radius = 5;
   // How often to repeat; pixels filled in one round serve the next.
   int num_rounds = 1;
+  // Share of the whole window's pixels that the fullest bin has to hold.
+  double min_share = 0;
   // Spread of the weights over distance in pixels and over difference in
   // intensity (0 to 1).
   float sigma_spatial = 5;

@@ -15,6 +15,8 @@ struct FittedPlane {
   // plane.
   float inlier_ratio = 0;
   int num_inliers = 0;
+  // The largest distance of an inlier, in scene units.
+  float max_distance = 0;
 };
 
 // Plane through most of the points (reference camera's frame, scene units) by

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "src/mvs/camera_table.h"
+#include "src/mvs/tapa/completion.h"
 #include "src/mvs/tapa/fill.h"
 #include "src/mvs/tapa/speckles.h"
 #include "src/mvs/tapa/textureness.h"
@@ -35,9 +36,11 @@ int NumSuperpixels(int width, double divisor) {
 
 }  // namespace
 
-TapaStages::TapaStages(const Options& options, const Problem& problem)
+TapaStages::TapaStages(const Options& options, const Problem& problem,
+                       const Control& control)
     : options_(options),
       problem_(problem),
+      control_(control),
       camera_(CameraTable(problem).reference()) {
   const Map<uint8_t>& image = *problem.reference.image;
   TexturenessOptions textureness;
@@ -50,7 +53,7 @@ TapaStages::TapaStages(const Options& options, const Problem& problem)
     record_.fine.superpixels = ComputeSuperpixels(
         color, NumSuperpixels(image.width(), options.tapa.fine_divisor));
   }
-  if (options.tapa.coarse_superpixels) {
+  if (options.tapa.coarse_superpixels && !Stopped()) {
     record_.coarse.superpixels = ComputeSuperpixels(
         color, NumSuperpixels(image.width(), options.tapa.coarse_divisor));
   }
@@ -60,7 +63,7 @@ void TapaStages::Begin(Backend* backend) {
   if (options_.tapa.texture_weighting) {
     backend->SetTextureness(record_.textureness);
   }
-  // The photometric pass begins at random.
+  // The photometric pass starts from noise.
   if (options_.geom_consistency) {
     ProposePlanes(0, backend);
   }
@@ -83,7 +86,7 @@ PlaneSet TapaStages::FitAndDraw(const Map<float>& depth, int iteration,
                                 uint64_t stream,
                                 Segmentation* segmentation) const {
   const Superpixels& superpixels = segmentation->superpixels;
-  if (superpixels.count() == 0) {
+  if (superpixels.count() == 0 || Stopped()) {
     return PlaneSet();
   }
   const uint64_t seed = options_.seed ^ (stream << 32);
@@ -93,25 +96,96 @@ PlaneSet TapaStages::FitAndDraw(const Map<float>& depth, int iteration,
 }
 
 void TapaStages::Refine(Estimate* estimate) {
-  record_.chosen = std::move(estimate->chosen);
-  record_.swept_depth = estimate->depth;
-  if (!options_.tapa.refinement) {
+  Map<float>& depth = estimate->depth;
+  if (control_.record != nullptr) {
+    record_.chosen = std::move(estimate->chosen);
+    record_.swept_depth = depth;
+  }
+  if (!options_.tapa.refinement || Stopped()) {
     return;
   }
-  RemoveSpeckles(SpeckleContinuity(), MaxSpeckleSize(), &estimate->depth);
-  record_.filtered_depth = estimate->depth;
+  record_.origin = Map<uint8_t>(depth.width(), depth.height(), kNoEstimate);
+
+  if (options_.tapa.completion) {
+    const int num_sources = static_cast<int>(problem_.sources.size());
+    RemoveUnsupported(num_sources,
+                      std::min(options_.filter_min_num_consistent, num_sources),
+                      estimate);
+  }
+  RemoveSpeckles(SpeckleContinuity(), MaxSpeckleSize(), &depth);
+  NoteOrigin(kSwept, depth);
+  if (control_.record != nullptr) {
+    record_.filtered_depth = depth;
+  }
+
+  if (options_.tapa.completion && !Stopped()) {
+    Complete(estimate);
+  }
+  if (!Stopped()) {
+    Fill(estimate);
+    NoteOrigin(kFilled, depth);
+  }
+  ClearOthers(estimate);
+}
+
+void TapaStages::Complete(Estimate* estimate) {
+  const int radius = static_cast<int>(options_.tapa.completion_radius *
+                                      estimate->depth.width());
+  LocalPlanes planes;
+  for (Segmentation* segmentation : {&record_.fine, &record_.coarse}) {
+    if (segmentation->superpixels.count() > 0) {
+      segmentation->planes =
+          FitPlanes(options_.tapa, camera_, estimate->depth,
+                    segmentation->superpixels, options_.seed);
+      LocalPlanes found = FindLocalPlanes(problem_, camera_, estimate->depth,
+                                          *segmentation, radius);
+      if (planes.depth.empty()) {
+        planes = std::move(found);
+      } else {
+        MergeLocalPlanes(found, &planes);
+      }
+    }
+  }
+  if (!planes.depth.empty()) {
+    CompleteWithPlanes(options_.tapa, planes, record_.textureness,
+                       &estimate->depth, &estimate->normal, &record_.origin);
+    record_.agreement = std::move(planes.agreement);
+  }
+}
+
+void TapaStages::Fill(Estimate* estimate) const {
   FillOptions fill;
   fill.radius = options_.tapa.fill_radius;
   fill.num_rounds = options_.tapa.fill_rounds;
+  if (options_.tapa.completion) {
+    fill.min_share = options_.tapa.completion_fill_share;
+  }
   fill.sigma_spatial =
       static_cast<float>(options_.sigma_spatial > 0 ? options_.sigma_spatial
                                                     : options_.window_radius);
   fill.sigma_color = static_cast<float>(options_.sigma_color);
   FillMissing(fill, camera_, *problem_.reference.image, &estimate->depth,
               &estimate->normal);
+}
+
+// Of the pixels that have got an estimate since the last call.
+void TapaStages::NoteOrigin(Origin origin, const Map<float>& depth) {
+  for (size_t i = 0; i < depth.size(); ++i) {
+    if (depth.data()[i] > 0 && record_.origin.data()[i] == kNoEstimate) {
+      record_.origin.data()[i] = origin;
+    }
+  }
+}
+
+// Source views support swept estimates only.
+void TapaStages::ClearOthers(Estimate* estimate) const {
+  const size_t mask_bytes = (problem_.sources.size() + 7) / 8;
   for (size_t i = 0; i < estimate->depth.size(); ++i) {
-    if (!(estimate->depth.data()[i] > 0)) {
+    if (record_.origin.data()[i] == kNoEstimate) {
       estimate->normal.data()[i] = Vec3();
+    }
+    if (record_.origin.data()[i] != kSwept) {
+      std::fill_n(estimate->consistent.begin() + i * mask_bytes, mask_bytes, 0);
     }
   }
 }

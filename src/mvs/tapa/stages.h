@@ -5,17 +5,12 @@
 
 #include "src/mvs/backend.h"
 #include "src/mvs/estimate_depth.h"
+#include "src/mvs/tapa/completion.h"
 #include "src/mvs/tapa/speckles.h"
 #include "src/mvs/tapa/superpixel_planes.h"
 #include "src/mvs/tapa/superpixels.h"
 
 namespace tapa {
-
-// A segmentation with the planes last fitted to it.
-struct Segmentation {
-  Superpixels superpixels;
-  std::vector<FittedPlane> planes;
-};
 
 // What TAPA did with one view, for pictures and tests.
 struct TapaRecord {
@@ -25,16 +20,26 @@ struct TapaRecord {
   Segmentation coarse;
   // Hypothesis (sweep.h) that each pixel chose in the last sweep.
   Map<uint8_t> chosen;
-  // Depth after the last sweep, and without speckles.
+  // Depth after the last sweep.
   Map<float> swept_depth;
+  // The same without what has no support or is a speckle; empty where
+  // refinement is off.
   Map<float> filtered_depth;
+  // How much the estimates nearby speak for the best plane (completion.h);
+  // empty where completion is off.
+  Map<float> agreement;
+  // One Origin per pixel; empty where refinement is off.
+  Map<uint8_t> origin;
 };
 
 // The stages of TAPA, which the schedule of the estimation calls at its points.
-// `problem` must outlive the object.
+// `problem` and `control` must outlive the object.
 class TapaStages {
  public:
-  TapaStages(const Options& options, const Problem& problem);
+  // Once control.stopped() said so, the stages end early, with results that
+  // make no sense.
+  TapaStages(const Options& options, const Problem& problem,
+             const Control& control);
 
   // Before the first sweep: weights, and in the geometric pass planes.
   void Begin(Backend* backend);
@@ -50,11 +55,18 @@ class TapaStages {
  private:
   PlaneSet FitAndDraw(const Map<float>& depth, int iteration, uint64_t stream,
                       Segmentation* segmentation) const;
+  void Complete(Estimate* estimate);
+  void Fill(Estimate* estimate) const;
+  void NoteOrigin(Origin origin, const Map<float>& depth);
+  void ClearOthers(Estimate* estimate) const;
   int MaxSpeckleSize() const;
   Continuity SpeckleContinuity() const;
 
+  bool Stopped() const { return control_.stopped && control_.stopped(); }
+
   const Options options_;
   const Problem& problem_;
+  const Control& control_;
   const RefCamera camera_;
   TapaRecord record_;
 };

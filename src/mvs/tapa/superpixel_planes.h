@@ -11,6 +11,12 @@
 
 namespace tapa {
 
+// A segmentation with the planes last fitted to it.
+struct Segmentation {
+  Superpixels superpixels;
+  std::vector<FittedPlane> planes;
+};
+
 // Fits a plane to the 3D points of every superpixel (TAPA-MVS, section 4.1).
 // `depth` are depths of the reference view, 0 where there is none. The largest
 // distance of a point from its plane is options.plane_distance or, where that

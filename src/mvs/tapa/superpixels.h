@@ -27,10 +27,13 @@ struct Superpixels {
 
 // Segments an image into about num_superpixels regions by SEEDS (Van den Bergh
 // et al., "SEEDS: Superpixels Extracted via Energy-Driven Sampling", IJCV
-// 2015), as section 4.1 of TAPA-MVS asks. The number is met roughly: between a
-// half and twice. Regions are at least 8 pixels wide and high on average, so an
-// image with less room gets fewer; an image of less than 16 pixels either way
-// is one region. An empty image has none. Deterministic.
+// 2015), as section 4.1 of TAPA-MVS asks. OpenCV's implementation rounds to
+// grids of blocks: it makes at most as many as asked, two thirds to three
+// quarters in most cases and on small images far fewer; of fewer than ten
+// asked, sometimes more. Regions are at least 8 pixels wide and high on
+// average, so an image with less room gets fewer; an image of less than 16
+// pixels either way, or of a shape that SEEDS cannot do, is one region. An
+// empty image has none. Deterministic.
 Superpixels ComputeSuperpixels(const Map<Rgb>& image, int num_superpixels);
 
 // Which superpixels touch, and how alike they are: Bhattacharyya coefficient of

@@ -1,0 +1,52 @@
+#ifndef TAPA_SRC_MVS_TAPA_COMPLETION_H_
+#define TAPA_SRC_MVS_TAPA_COMPLETION_H_
+
+#include "src/mvs/estimate_depth.h"
+#include "src/mvs/tapa/superpixel_planes.h"
+
+// Beyond TAPA-MVS: which estimates to believe in after the last sweep, and how
+// to complete the others. See docs/tapa.md for what it gains.
+
+namespace tapa {
+
+// Where the final estimate of a pixel comes from.
+enum Origin : uint8_t { kNoEstimate, kSwept, kFromPlane, kFilled };
+
+// Removes estimates (depth 0) that fewer than min_num_views source views
+// support, by estimate->consistent.
+void RemoveUnsupported(int num_sources, int min_num_views, Estimate* estimate);
+
+// A plane for every pixel, and how much the estimates near it speak for it.
+struct LocalPlanes {
+  // Depth 0: there is none.
+  Map<float> depth;
+  Map<Vec3> normal;
+  // Share, 0 to 1, of the estimates in the pixel's superpixel and within a
+  // radius around it that lie on the plane. Where they are few the inlier ratio
+  // of the whole superpixel counts like ten of them.
+  Map<float> agreement;
+};
+
+// The plane of each pixel's own superpixel. radius: half size of the square
+// around a pixel whose estimates count, in pixels. Planes outside of the
+// problem's range of depths are left out. Time is linear in the number of
+// pixels in the superpixels' bounding boxes and does not depend on the radius.
+LocalPlanes FindLocalPlanes(const Problem& problem, const RefCamera& camera,
+                            const Map<float>& depth,
+                            const Segmentation& segmentation, int radius);
+
+// Keeps, at every pixel, the plane that has more agreement.
+void MergeLocalPlanes(const LocalPlanes& other, LocalPlanes* planes);
+
+// Gives pixels the plane that at least options.completion_agreement of the
+// estimates near them lie on, where they have no estimate or a textureness
+// below options.completion_textureness: there, what most estimates around say
+// is worth more than the pixel's own. Notes
+// their origin.
+void CompleteWithPlanes(const TapaOptions& options, const LocalPlanes& planes,
+                        const Map<float>& textureness, Map<float>* depth,
+                        Map<Vec3>* normal, Map<uint8_t>* origin);
+
+}  // namespace tapa
+
+#endif  // TAPA_SRC_MVS_TAPA_COMPLETION_H_
