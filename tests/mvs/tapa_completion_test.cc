@@ -1,0 +1,184 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "src/mvs/tapa/completion.h"
+
+namespace tapa {
+namespace {
+
+constexpr int kWidth = 60;
+constexpr int kHeight = 40;
+
+RefCamera TestCamera() {
+  const float focal = 50;
+  return {1 / focal, 1 / focal, -kWidth / 2 / focal, -kHeight / 2 / focal};
+}
+
+Problem TestProblem() {
+  Problem problem;
+  problem.depth_min = 1;
+  problem.depth_max = 10;
+  return problem;
+}
+
+FittedPlane FrontalPlane(float depth, float ratio) {
+  FittedPlane fitted;
+  fitted.plane = {{0, 0, -1}, depth};
+  fitted.inlier_ratio = ratio;
+  fitted.max_distance = 0.1f;
+  return fitted;
+}
+
+// Two superpixels, left and right, with planes at depths 3 and 5.
+Segmentation TwoHalves() {
+  Segmentation segmentation;
+  segmentation.superpixels.labels = Map<uint16_t>(kWidth, kHeight);
+  for (int row = 0; row < kHeight; ++row) {
+    for (int col = kWidth / 2; col < kWidth; ++col) {
+      segmentation.superpixels.labels.At(row, col) = 1;
+    }
+  }
+  segmentation.superpixels.neighbors.resize(2);
+  segmentation.planes = {FrontalPlane(3, 0.6f), FrontalPlane(5, 0.9f)};
+  return segmentation;
+}
+
+Map<float> RandomDepth() {
+  std::mt19937 random(1);
+  Map<float> depth(kWidth, kHeight);
+  for (size_t i = 0; i < depth.size(); ++i) {
+    const float values[] = {0, 3, 3.05f, 3.2f, 5, 4.95f, 7};
+    depth.data()[i] = values[random() % 7];
+  }
+  return depth;
+}
+
+// The definition, pixel by pixel.
+float NaiveAgreement(const Map<float>& depth, const Segmentation& segmentation,
+                     int row, int col, int radius) {
+  const Map<uint16_t>& labels = segmentation.superpixels.labels;
+  const FittedPlane& fitted = segmentation.planes[labels.At(row, col)];
+  double all = 10;
+  double on_plane = 10.0 * fitted.inlier_ratio;
+  for (int y = row - radius; y <= row + radius; ++y) {
+    for (int x = col - radius; x <= col + radius; ++x) {
+      if (x >= 0 && y >= 0 && x < kWidth && y < kHeight &&
+          labels.At(y, x) == labels.At(row, col) && depth.At(y, x) > 0) {
+        // The planes are frontal: distances are differences in depth.
+        all += 1;
+        on_plane += std::abs(depth.At(y, x) - fitted.plane.distance) <= 0.1;
+      }
+    }
+  }
+  return static_cast<float>(on_plane / all);
+}
+
+TEST(Completion, AgreementIsThatOfTheEstimatesNearby) {
+  const Segmentation segmentation = TwoHalves();
+  const Map<float> depth = RandomDepth();
+  for (const int radius : {0, 1, 7, 70}) {
+    const LocalPlanes planes = FindLocalPlanes(TestProblem(), TestCamera(),
+                                               depth, segmentation, radius);
+    for (int row = 0; row < kHeight; ++row) {
+      for (int col = 0; col < kWidth; ++col) {
+        ASSERT_NEAR(planes.agreement.At(row, col),
+                    NaiveAgreement(depth, segmentation, row, col, radius), 1e-5)
+            << row << " " << col << " " << radius;
+        ASSERT_NEAR(planes.depth.At(row, col), col < kWidth / 2 ? 3 : 5, 1e-5);
+        ASSERT_EQ(planes.normal.At(row, col).z, -1);
+      }
+    }
+  }
+}
+
+TEST(Completion, ASecondPlaneInTheSuperpixelIsSeenWhereItIs) {
+  // The upper half lies on the superpixel's plane, the lower one behind it.
+  Segmentation segmentation = TwoHalves();
+  segmentation.superpixels.labels = Map<uint16_t>(kWidth, kHeight);
+  Map<float> depth(kWidth, kHeight, 3);
+  for (int row = kHeight / 2; row < kHeight; ++row) {
+    for (int col = 0; col < kWidth; ++col) depth.At(row, col) = 4;
+  }
+  const LocalPlanes planes =
+      FindLocalPlanes(TestProblem(), TestCamera(), depth, segmentation, 6);
+  EXPECT_GT(planes.agreement.At(3, 30), 0.9f);
+  EXPECT_LT(planes.agreement.At(kHeight - 4, 30), 0.2f);
+}
+
+TEST(Completion, PlanesOutsideTheRangeOfDepthsAreNone) {
+  Segmentation segmentation = TwoHalves();
+  segmentation.planes[0] = FrontalPlane(0.5f, 1);
+  segmentation.planes[1] = FrontalPlane(20, 1);
+  const LocalPlanes planes = FindLocalPlanes(TestProblem(), TestCamera(),
+                                             RandomDepth(), segmentation, 5);
+  for (size_t i = 0; i < planes.depth.size(); ++i) {
+    ASSERT_EQ(planes.depth.data()[i], 0);
+    ASSERT_EQ(planes.agreement.data()[i], 0);
+  }
+}
+
+TEST(Completion, SuperpixelsWithoutPlaneHaveNone) {
+  Segmentation segmentation = TwoHalves();
+  segmentation.planes[0] = FittedPlane();
+  const LocalPlanes planes =
+      FindLocalPlanes(TestProblem(), TestCamera(), Map<float>(kWidth, kHeight),
+                      segmentation, 5);
+  EXPECT_EQ(planes.depth.At(0, 0), 0);
+  // Where there are no estimates nearby, the superpixel's ratio stands.
+  EXPECT_NEAR(planes.agreement.At(0, kWidth - 1), 0.9, 1e-6);
+}
+
+TEST(Completion, MergingKeepsThePlaneWithMoreAgreement) {
+  Segmentation other = TwoHalves();
+  other.planes = {FrontalPlane(4, 0.5f), FrontalPlane(6, 0.95f)};
+  const Map<float> none(kWidth, kHeight);
+  LocalPlanes planes =
+      FindLocalPlanes(TestProblem(), TestCamera(), none, TwoHalves(), 5);
+  MergeLocalPlanes(FindLocalPlanes(TestProblem(), TestCamera(), none, other, 5),
+                   &planes);
+  EXPECT_NEAR(planes.depth.At(5, 5), 3, 1e-5);
+  EXPECT_NEAR(planes.depth.At(5, kWidth - 5), 6, 1e-5);
+}
+
+TEST(Completion, ReplacesMissingEstimatesAndThoseOfLittleTexture) {
+  TapaOptions options;
+  options.completion_agreement = 0.5;
+  options.completion_textureness = 0.75;
+  LocalPlanes planes;
+  planes.depth = Map<float>(6, 1, 2);
+  planes.normal = Map<Vec3>(6, 1, Vec3{0, 0, -1});
+  planes.agreement = Map<float>(6, 1, 0.5f);
+  planes.agreement.At(0, 4) = 0.49f;
+  planes.depth.At(0, 5) = 0;
+  Map<float> textureness(6, 1, 0.9f);
+  textureness.At(0, 2) = 0.7f;
+  // Missing, textured, flat, missing, missing without agreement, without plane.
+  Map<float> depth(6, 1);
+  depth.At(0, 1) = depth.At(0, 2) = 9;
+  Map<Vec3> normal(6, 1);
+  Map<uint8_t> origin(6, 1, kNoEstimate);
+  CompleteWithPlanes(options, planes, textureness, &depth, &normal, &origin);
+  const float expected[] = {2, 9, 2, 2, 0, 0};
+  for (int i = 0; i < 6; ++i) {
+    EXPECT_EQ(depth.At(0, i), expected[i]) << i;
+    EXPECT_EQ(origin.At(0, i), expected[i] == 2 ? kFromPlane : kNoEstimate);
+    EXPECT_EQ(normal.At(0, i).z, expected[i] == 2 ? -1 : 0);
+  }
+}
+
+TEST(Completion, RemovesEstimatesThatTooFewViewsSupport) {
+  // Eleven sources: two bytes for every pixel.
+  Estimate estimate;
+  estimate.depth = Map<float>(4, 1, 5);
+  estimate.consistent = {0, 0, 1, 0, 1, 4, 0, 6};
+  RemoveUnsupported(11, 2, &estimate);
+  EXPECT_EQ(estimate.depth.At(0, 0), 0);
+  EXPECT_EQ(estimate.depth.At(0, 1), 0);
+  EXPECT_EQ(estimate.depth.At(0, 2), 5);
+  EXPECT_EQ(estimate.depth.At(0, 3), 5);
+}
+
+}  // namespace
+}  // namespace tapa
