@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
 # From photographs to points.
 #
-#   scripts/demo.sh                 the built-in example, with scores
-#   scripts/demo.sh PHOTOS [OUT]    a folder of photographs; the result goes to
-#                                   OUT (PHOTOS-reconstruction beside it)
+#   scripts/demo.sh                 the built-in example, without and with TAPA,
+#                                   with scores
+#   scripts/demo.sh PHOTOS [OUT]    a folder of photographs, with TAPA; the result
+#                                   goes to OUT (PHOTOS-reconstruction beside it)
 #
 # Installs what is missing and builds first. A run that was stopped goes on
 # where it left off. Photographs are scaled down to at most MAX_IMAGE_SIZE (1600)
@@ -21,22 +22,36 @@ fail() {
   exit 1
 }
 
+# Half the default reprojection error and twice the normal error, as the paper.
+tapa_fusion=(--StereoFusion.max_reproj_error 1
+  --StereoFusion.max_normal_error 20)
+
 run() {
   echo "\$ ${*/#$root\//}" >&2
   "$@"
 }
 
+# Once with COLMAP's own algorithm, once with TAPA, which completes the walls.
+# Points of both are fused with the same thresholds.
 reconstruct_example() {
-  local out=$build/demo/room
-  mkdir -p "$out"
-  PICTURES=1 TOLERANCES=0.01,0.02,0.05,0.1 MAX_TEXTURENESS=0.75 \
-    run "$here/evaluate_dataset.sh" "$root/examples/room" "$out"
-  run "$bin/colmap" stereo_fusion --workspace_path "$out" \
-    --output_path "$out/fused.ply"
-  echo
-  echo "Scores:   $out/scores.txt"
-  echo "Pictures: $out/pictures/"
-  echo "Points:   $out/fused.ply"
+  local out method
+  for method in plain tapa; do
+    out=$build/demo/room_$method
+    mkdir -p "$out"
+    PICTURES=1 TOLERANCES=0.01,0.02,0.05,0.1 MAX_TEXTURENESS=0.75 \
+      run "$here/evaluate_dataset.sh" "$root/examples/room" "$out" \
+      --PatchMatchStereo.tapa "$([[ $method == tapa ]] && echo 1 || echo 0)"
+    run "$bin/colmap" stereo_fusion --workspace_path "$out" \
+      --output_path "$out/fused.ply" "${tapa_fusion[@]}"
+  done
+  for method in plain tapa; do
+    out=$build/demo/room_$method
+    echo
+    [[ $method == plain ]] && echo "COLMAP's own algorithm:" || echo "TAPA:"
+    cat "$out/scores.txt"
+    echo "Pictures: $out/pictures/"
+    echo "Points:   $out/fused.ply"
+  done
 }
 
 # Folder of the largest of the models that the mapper made.
@@ -99,9 +114,9 @@ reconstruct_photos() {
   fi
   # A photograph that sees nothing from another angle is left out.
   run "$bin/colmap" patch_match_stereo --workspace_path "$out/dense" \
-    --PatchMatchStereo.allow_missing_files 1
+    --PatchMatchStereo.allow_missing_files 1 --PatchMatchStereo.tapa 1
   run "$bin/colmap" stereo_fusion --workspace_path "$out/dense" \
-    --output_path "$out/dense/fused.ply"
+    --output_path "$out/dense/fused.ply" "${tapa_fusion[@]}"
   run "$bin/evaluate_depth_maps" --workspace_path "$out/dense" \
     --pictures "$out/pictures"
   echo
