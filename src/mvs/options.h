@@ -49,11 +49,12 @@ struct TapaOptions {
   // How often the fill is repeated: it reaches fill_radius pixels each time.
   int fill_rounds = 1;
 
-  // Beyond the paper: of the estimates only those stay that enough source views
-  // support; the planes of superpixels replace the others (docs/tapa.md).
+  // Beyond the paper: only estimates that source views support stay, one view
+  // fewer than Options::filter_min_num_consistent; planes of superpixels,
+  // fitted to those that reach it, replace the others (docs/tapa.md).
   bool completion = true;
   // Share of the estimates nearby that have to lie on the plane, 0 to 1.
-  double completion_agreement = 0.5;
+  double completion_agreement = 0.4;
   // What is nearby: half size of a square, as a share of the image's width.
   double completion_radius = 0.1;
   // Below this textureness planes replace supported estimates, too.

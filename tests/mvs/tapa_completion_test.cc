@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <random>
+#include <vector>
 
 #include "src/mvs/tapa/completion.h"
 
@@ -60,8 +61,8 @@ float NaiveAgreement(const Map<float>& depth, const Segmentation& segmentation,
                      int row, int col, int radius) {
   const Map<uint16_t>& labels = segmentation.superpixels.labels;
   const FittedPlane& fitted = segmentation.planes[labels.At(row, col)];
-  double all = 10;
-  double on_plane = 10.0 * fitted.inlier_ratio;
+  double all = 0.005 * (2 * radius + 1) * (2 * radius + 1);
+  double on_plane = 0;
   for (int y = row - radius; y <= row + radius; ++y) {
     for (int x = col - radius; x <= col + radius; ++x) {
       if (x >= 0 && y >= 0 && x < kWidth && y < kHeight &&
@@ -126,20 +127,26 @@ TEST(Completion, SuperpixelsWithoutPlaneHaveNone) {
       FindLocalPlanes(TestProblem(), TestCamera(), Map<float>(kWidth, kHeight),
                       segmentation, 5);
   EXPECT_EQ(planes.depth.At(0, 0), 0);
-  // Where there are no estimates nearby, the superpixel's ratio stands.
-  EXPECT_NEAR(planes.agreement.At(0, kWidth - 1), 0.9, 1e-6);
+  // Nor is there agreement where there are no estimates nearby.
+  EXPECT_GT(planes.depth.At(0, kWidth - 1), 0);
+  EXPECT_EQ(planes.agreement.At(0, kWidth - 1), 0);
 }
 
 TEST(Completion, MergingKeepsThePlaneWithMoreAgreement) {
+  // The left half lies on the first planes, the right one on the others.
+  Map<float> depth(kWidth, kHeight, 3);
+  for (int row = 0; row < kHeight; ++row) {
+    for (int col = kWidth / 2; col < kWidth; ++col) depth.At(row, col) = 6;
+  }
   Segmentation other = TwoHalves();
   other.planes = {FrontalPlane(4, 0.5f), FrontalPlane(6, 0.95f)};
-  const Map<float> none(kWidth, kHeight);
   LocalPlanes planes =
-      FindLocalPlanes(TestProblem(), TestCamera(), none, TwoHalves(), 5);
-  MergeLocalPlanes(FindLocalPlanes(TestProblem(), TestCamera(), none, other, 5),
-                   &planes);
+      FindLocalPlanes(TestProblem(), TestCamera(), depth, TwoHalves(), 5);
+  MergeLocalPlanes(
+      FindLocalPlanes(TestProblem(), TestCamera(), depth, other, 5), &planes);
   EXPECT_NEAR(planes.depth.At(5, 5), 3, 1e-5);
   EXPECT_NEAR(planes.depth.At(5, kWidth - 5), 6, 1e-5);
+  EXPECT_GT(planes.agreement.At(5, kWidth - 5), 0.9f);
 }
 
 TEST(Completion, ReplacesMissingEstimatesAndThoseOfLittleTexture) {
@@ -170,14 +177,16 @@ TEST(Completion, ReplacesMissingEstimatesAndThoseOfLittleTexture) {
 
 TEST(Completion, RemovesEstimatesThatTooFewViewsSupport) {
   // Eleven sources: two bytes for every pixel.
-  Estimate estimate;
-  estimate.depth = Map<float>(4, 1, 5);
-  estimate.consistent = {0, 0, 1, 0, 1, 4, 0, 6};
-  RemoveUnsupported(11, 2, &estimate);
-  EXPECT_EQ(estimate.depth.At(0, 0), 0);
-  EXPECT_EQ(estimate.depth.At(0, 1), 0);
-  EXPECT_EQ(estimate.depth.At(0, 2), 5);
-  EXPECT_EQ(estimate.depth.At(0, 3), 5);
+  const std::vector<uint8_t> consistent = {0, 0, 1, 0, 1, 4, 0, 6};
+  const float expected[4][4] = {
+      {5, 5, 5, 5}, {0, 5, 5, 5}, {0, 0, 5, 5}, {0, 0, 0, 0}};
+  for (int min_num_views = 0; min_num_views < 4; ++min_num_views) {
+    Map<float> depth(4, 1, 5);
+    RemoveUnsupported(consistent, 11, min_num_views, &depth);
+    for (int i = 0; i < 4; ++i) {
+      EXPECT_EQ(depth.At(0, i), expected[min_num_views][i]);
+    }
+  }
 }
 
 }  // namespace

@@ -98,15 +98,16 @@ class EstimateCounts {
 
 }  // namespace
 
-void RemoveUnsupported(int num_sources, int min_num_views, Estimate* estimate) {
+void RemoveUnsupported(const std::vector<uint8_t>& consistent, int num_sources,
+                       int min_num_views, Map<float>* depth) {
   const size_t mask_bytes = (num_sources + 7) / 8;
-  for (size_t i = 0; i < estimate->depth.size(); ++i) {
+  for (size_t i = 0; i < depth->size(); ++i) {
     size_t count = 0;
     for (size_t k = 0; k < mask_bytes; ++k) {
-      count += std::bitset<8>(estimate->consistent[i * mask_bytes + k]).count();
+      count += std::bitset<8>(consistent[i * mask_bytes + k]).count();
     }
-    if (count < static_cast<size_t>(min_num_views)) {
-      estimate->depth.data()[i] = 0;
+    if (count < static_cast<size_t>(std::max(min_num_views, 0))) {
+      depth->data()[i] = 0;
     }
   }
 }
@@ -114,8 +115,9 @@ void RemoveUnsupported(int num_sources, int min_num_views, Estimate* estimate) {
 LocalPlanes FindLocalPlanes(const Problem& problem, const RefCamera& camera,
                             const Map<float>& depth,
                             const Segmentation& segmentation, int radius) {
-  // The weight of the whole superpixel's inlier ratio, in estimates.
-  constexpr float kPriorCount = 10;
+  // Share of the square that is taken to speak against every plane.
+  constexpr float kDoubt = 0.005f;
+  const float doubt = kDoubt * (2.0f * radius + 1) * (2.0f * radius + 1);
   const Map<uint16_t>& labels = segmentation.superpixels.labels;
   LocalPlanes result;
   result.depth = Map<float>(labels.width(), labels.height());
@@ -142,9 +144,7 @@ LocalPlanes FindLocalPlanes(const Problem& problem, const RefCamera& camera,
         const auto near = counts.Around(row, col, radius);
         result.depth.At(row, col) = plane.depth;
         result.normal.At(row, col) = plane.normal;
-        result.agreement.At(row, col) =
-            (near.on_plane + kPriorCount * fitted.inlier_ratio) /
-            (near.all + kPriorCount);
+        result.agreement.At(row, col) = near.on_plane / (near.all + doubt);
       }
     }
   }

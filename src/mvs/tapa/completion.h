@@ -1,6 +1,9 @@
 #ifndef TAPA_SRC_MVS_TAPA_COMPLETION_H_
 #define TAPA_SRC_MVS_TAPA_COMPLETION_H_
 
+#include <cstdint>
+#include <vector>
+
 #include "src/mvs/estimate_depth.h"
 #include "src/mvs/tapa/superpixel_planes.h"
 
@@ -12,25 +15,27 @@ namespace tapa {
 // Where the final estimate of a pixel comes from.
 enum Origin : uint8_t { kNoEstimate, kSwept, kFromPlane, kFilled };
 
-// Removes estimates (depth 0) that fewer than min_num_views source views
-// support, by estimate->consistent.
-void RemoveUnsupported(int num_sources, int min_num_views, Estimate* estimate);
+// Removes depths (sets them to 0) that fewer than min_num_views source views
+// support, by Estimate::consistent.
+void RemoveUnsupported(const std::vector<uint8_t>& consistent, int num_sources,
+                       int min_num_views, Map<float>* depth);
 
 // A plane for every pixel, and how much the estimates near it speak for it.
 struct LocalPlanes {
   // Depth 0: there is none.
   Map<float> depth;
   Map<Vec3> normal;
-  // Share, 0 to 1, of the estimates in the pixel's superpixel and within a
-  // radius around it that lie on the plane. Where they are few the inlier ratio
-  // of the whole superpixel counts like ten of them.
+  // Share, 0 to 1, of the estimates in the pixel's superpixel and in a square
+  // around it that lie on the plane. One in 200 of the square's pixels is taken
+  // to speak against it, so that few estimates do not count for much.
   Map<float> agreement;
 };
 
 // The plane of each pixel's own superpixel. radius: half size of the square
 // around a pixel whose estimates count, in pixels. Planes outside of the
-// problem's range of depths are left out. Time is linear in the number of
-// pixels in the superpixels' bounding boxes and does not depend on the radius.
+// problem's range of depths are left out. depth: estimates to trust. Time is
+// linear in the number of pixels in the superpixels' bounding boxes and does
+// not depend on the radius.
 LocalPlanes FindLocalPlanes(const Problem& problem, const RefCamera& camera,
                             const Map<float>& depth,
                             const Segmentation& segmentation, int radius);

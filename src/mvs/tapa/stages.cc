@@ -106,20 +106,21 @@ void TapaStages::Refine(Estimate* estimate) {
   }
   record_.origin = Map<uint8_t>(depth.width(), depth.height(), kNoEstimate);
 
+  Map<float> trusted;
   if (options_.tapa.completion) {
-    const int num_sources = static_cast<int>(problem_.sources.size());
-    RemoveUnsupported(num_sources,
-                      std::min(options_.filter_min_num_consistent, num_sources),
-                      estimate);
+    trusted = depth;
+    KeepSupported(options_.filter_min_num_consistent, *estimate, &trusted);
+    KeepSupported(options_.filter_min_num_consistent - 1, *estimate, &depth);
+  } else {
+    RemoveSpeckles(SpeckleContinuity(), MaxSpeckleSize(), &depth);
   }
-  RemoveSpeckles(SpeckleContinuity(), MaxSpeckleSize(), &depth);
   NoteOrigin(kSwept, depth);
   if (control_.record != nullptr) {
     record_.filtered_depth = depth;
   }
 
   if (options_.tapa.completion && !Stopped()) {
-    Complete(estimate);
+    Complete(trusted, estimate);
   }
   if (!Stopped()) {
     Fill(estimate);
@@ -128,17 +129,26 @@ void TapaStages::Refine(Estimate* estimate) {
   ClearOthers(estimate);
 }
 
-void TapaStages::Complete(Estimate* estimate) {
+// What at least this many source views support, without speckles.
+void TapaStages::KeepSupported(int min_num_views, const Estimate& estimate,
+                               Map<float>* depth) const {
+  const int num_sources = static_cast<int>(problem_.sources.size());
+  RemoveUnsupported(estimate.consistent, num_sources,
+                    std::min(min_num_views, num_sources), depth);
+  RemoveSpeckles(SpeckleContinuity(), MaxSpeckleSize(), depth);
+}
+
+void TapaStages::Complete(const Map<float>& trusted, Estimate* estimate) {
   const int radius = static_cast<int>(options_.tapa.completion_radius *
                                       estimate->depth.width());
   LocalPlanes planes;
   for (Segmentation* segmentation : {&record_.fine, &record_.coarse}) {
     if (segmentation->superpixels.count() > 0) {
       segmentation->planes =
-          FitPlanes(options_.tapa, camera_, estimate->depth,
-                    segmentation->superpixels, options_.seed);
-      LocalPlanes found = FindLocalPlanes(problem_, camera_, estimate->depth,
-                                          *segmentation, radius);
+          FitPlanes(options_.tapa, camera_, trusted, segmentation->superpixels,
+                    options_.seed);
+      LocalPlanes found =
+          FindLocalPlanes(problem_, camera_, trusted, *segmentation, radius);
       if (planes.depth.empty()) {
         planes = std::move(found);
       } else {

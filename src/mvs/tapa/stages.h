@@ -55,7 +55,9 @@ class TapaStages {
  private:
   PlaneSet FitAndDraw(const Map<float>& depth, int iteration, uint64_t stream,
                       Segmentation* segmentation) const;
-  void Complete(Estimate* estimate);
+  void KeepSupported(int min_num_views, const Estimate& estimate,
+                     Map<float>* depth) const;
+  void Complete(const Map<float>& trusted, Estimate* estimate);
   void Fill(Estimate* estimate) const;
   void NoteOrigin(Origin origin, const Map<float>& depth);
   void ClearOthers(Estimate* estimate) const;
