@@ -67,7 +67,7 @@ struct HostOptions {
   // complete the others with planes: part of the refinement.
   bool tapa_completion = true;
   // Share of the estimates nearby that have to lie on a plane, 0 to 1.
-  double tapa_completion_agreement = 0.4;
+  double tapa_completion_agreement = 0.5;
   // What is nearby: half size of a square, as a share of the image's width.
   double tapa_completion_radius = 0.1;
   // Below this textureness planes replace supported estimates, too.

@@ -54,7 +54,7 @@ struct TapaOptions {
   // fitted to those that reach it, replace the others (docs/tapa.md).
   bool completion = true;
   // Share of the estimates nearby that have to lie on the plane, 0 to 1.
-  double completion_agreement = 0.4;
+  double completion_agreement = 0.5;
   // What is nearby: half size of a square, as a share of the image's width.
   double completion_radius = 0.1;
   // Below this textureness planes replace supported estimates, too.

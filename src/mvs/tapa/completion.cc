@@ -68,6 +68,8 @@ class EstimateCounts {
     }
   }
 
+  Counts All() const { return sums_.back(); }
+
   Counts Around(int row, int col, int radius) const {
     const int top = std::max(row - radius, box_.top);
     const int left = std::max(col - radius, box_.left);
@@ -115,8 +117,13 @@ void RemoveUnsupported(const std::vector<uint8_t>& consistent, int num_sources,
 LocalPlanes FindLocalPlanes(const Problem& problem, const RefCamera& camera,
                             const Map<float>& depth,
                             const Segmentation& segmentation, int radius) {
+  // Weight of the estimates outside of the square.
+  constexpr float kFarWeight = 0.2f;
   // Share of the square that is taken to speak against every plane.
   constexpr float kDoubt = 0.005f;
+  const auto weigh = [](int near, int all) {
+    return near + kFarWeight * (all - near);
+  };
   const float doubt = kDoubt * (2.0f * radius + 1) * (2.0f * radius + 1);
   const Map<uint16_t>& labels = segmentation.superpixels.labels;
   LocalPlanes result;
@@ -131,6 +138,7 @@ LocalPlanes FindLocalPlanes(const Problem& problem, const RefCamera& camera,
     }
     const Box& box = boxes[label];
     const EstimateCounts counts(camera, depth, segmentation, label, box);
+    const auto all = counts.All();
     for (int row = box.top; row < box.bottom; ++row) {
       for (int col = box.left; col < box.right; ++col) {
         if (labels.At(row, col) != label) {
@@ -144,7 +152,8 @@ LocalPlanes FindLocalPlanes(const Problem& problem, const RefCamera& camera,
         const auto near = counts.Around(row, col, radius);
         result.depth.At(row, col) = plane.depth;
         result.normal.At(row, col) = plane.normal;
-        result.agreement.At(row, col) = near.on_plane / (near.all + doubt);
+        result.agreement.At(row, col) = weigh(near.on_plane, all.on_plane) /
+                                        (weigh(near.all, all.all) + doubt);
       }
     }
   }

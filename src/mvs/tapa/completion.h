@@ -25,9 +25,10 @@ struct LocalPlanes {
   // Depth 0: there is none.
   Map<float> depth;
   Map<Vec3> normal;
-  // Share, 0 to 1, of the estimates in the pixel's superpixel and in a square
-  // around it that lie on the plane. One in 200 of the square's pixels is taken
-  // to speak against it, so that few estimates do not count for much.
+  // Share, 0 to 1, of the estimates that lie on the plane: those of the pixel's
+  // superpixel, of which the ones outside of a square around the pixel count
+  // only a fifth. One in 200 of the square's pixels is taken to speak against
+  // the plane, so that few estimates do not count for much.
   Map<float> agreement;
 };
 
