@@ -56,6 +56,9 @@ void CheckOptions(const PatchMatchOptions& options) {
     CheckOption("cache_size", options.cache_size,
                 options.cache_size > 0 && std::isfinite(options.cache_size),
                 "positive");
+    CheckOption("tapa_debug", options.tapa_debug,
+                options.tapa_debug.empty() || options.tapa,
+                "empty unless tapa is on: there would be nothing to draw");
     if (options.depth_min >= 0 || options.depth_max >= 0) {
       CheckOption("depth_min", options.depth_min,
                   options.depth_min > 0 && std::isfinite(options.depth_min),

@@ -75,6 +75,10 @@ struct HostOptions {
   // Share of a window's pixels that have to speak for a fill, 0 to 1.
   double tapa_completion_fill_share = 0.5;
 
+  // Folder for pictures of what TAPA did with every view that the last pass
+  // computes; empty: none. Maps do not depend on it.
+  std::string tapa_debug;
+
   // Calls visit(name, pointer to the member, help) for every option. Members
   // are bool, int, double or std::string.
   template <typename Visitor>
@@ -149,6 +153,9 @@ struct HostOptions {
     visit(S("tapa_completion_fill_share"), &options->tapa_completion_fill_share,
           S("Share of a window's pixels that have to speak for a fill, 0 to "
             "1"));
+    visit(S("tapa_debug"), &options->tapa_debug,
+          S("Folder for pictures of every step of TAPA for every view that is "
+            "computed; empty: none"));
   }
 };
 

@@ -159,13 +159,13 @@ void WriteGraph(const std::string& path, int width, int height,
             graph.size() * sizeof(int32_t));
 }
 
-void PrepareMapFolder(const std::string& path) {
+void PrepareFolder(const std::string& path, const std::string& contents) {
   boost::system::error_code error;
   boost::filesystem::create_directories(path, error);
   if (!boost::filesystem::is_directory(path)) {
     throw Failure("There is no folder " + path + ", and it cannot be made" +
-                  (error ? " (" + error.message() + ")" : "") +
-                  "; maps are written there");
+                  (error ? " (" + error.message() + ")" : "") + "; " +
+                  contents + " are written there");
   }
   RemoveStaleTemporaries(path);
   AtomicFile probe(path + "/probe");

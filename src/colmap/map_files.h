@@ -38,7 +38,8 @@ void WriteGraph(const std::string& path, int width, int height,
 
 // Throws Failure if files cannot be made in the folder. Makes it if it is not
 // there. Removes the unfinished files of this machine's dead processes.
-void PrepareMapFolder(const std::string& path);
+// contents: what is written there, for the message.
+void PrepareFolder(const std::string& path, const std::string& contents);
 
 }  // namespace tapa
 

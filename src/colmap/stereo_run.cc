@@ -14,7 +14,9 @@
 #include "src/colmap/engine_options.h"
 #include "src/colmap/failure.h"
 #include "src/colmap/map_files.h"
+#include "src/colmap/tapa_debug.h"
 #include "src/mvs/estimate_depth.h"
+#include "src/mvs/tapa/stages.h"
 #include "util/misc.h"
 
 namespace tapa {
@@ -88,6 +90,7 @@ bool StereoRun::Prepare(const std::function<bool()>& stopped) {
   CheckRecords();
   CheckMaps();
   PrepareFolders();
+  WarnOfMissingPictures();
   std::cout << "Configuration has " << NumViews() << " views." << std::endl;
 
   // A depth map takes four times the bytes of its photograph.
@@ -287,7 +290,34 @@ void StereoRun::PrepareFolders() const {
     }
   }
   for (const std::string& folder : folders) {
-    PrepareMapFolder(folder);
+    PrepareFolder(folder, "maps");
+  }
+  for (const ViewIndices& problem : problems_) {
+    if (WritesPictures(FinalPass()) &&
+        !IsDone(problem.reference, FinalPass())) {
+      PrepareFolder(TapaPictureFolder(options_.tapa_debug,
+                                      views_[problem.reference].name),
+                    "the pictures of tapa_debug");
+    }
+  }
+}
+
+// Pictures show a computation, not its maps.
+void StereoRun::WarnOfMissingPictures() const {
+  if (!WritesPictures(FinalPass())) {
+    return;
+  }
+  const auto num_done = std::count_if(
+      problems_.begin(), problems_.end(), [this](const ViewIndices& problem) {
+        return IsDone(problem.reference, FinalPass());
+      });
+  if (num_done > 0) {
+    PrintWarning(std::to_string(num_done) + " of " +
+                 std::to_string(NumViews()) +
+                 " views have their maps already, so that this run draws no "
+                 "pictures of them; to get some, remove their " +
+                 (FinalPass() == Pass::kGeometric ? "*.geometric.bin"
+                                                  : "*.photometric.bin"));
   }
 }
 
@@ -321,6 +351,10 @@ std::string StereoRun::MapPath(const std::string& kind, int view,
 bool StereoRun::WritesGraph(Pass pass) const {
   // The pass before the final one does not filter.
   return options_.write_consistency_graph && pass == FinalPass();
+}
+
+bool StereoRun::WritesPictures(Pass pass) const {
+  return options_.tapa && !options_.tapa_debug.empty() && pass == FinalPass();
 }
 
 bool StereoRun::HasMaps(Pass pass) const {
@@ -441,6 +475,10 @@ bool StereoRun::ComputeView(const ViewIndices& problem, Pass pass,
   Control control;
   control.progress = [this](double share) { progress_->Update(share); };
   control.stopped = stopped;
+  TapaRecord record;
+  if (WritesPictures(pass)) {
+    control.record = &record;
+  }
 
   const size_t memory = EstimateDepthMemory(options, engine_problem);
   std::optional<Estimate> estimate;
@@ -459,6 +497,21 @@ bool StereoRun::ComputeView(const ViewIndices& problem, Pass pass,
     return false;
   }
 
+  // Before the maps, so that a run that is cut off here draws them again.
+  if (WritesPictures(pass)) {
+    TapaView view;
+    view.title = reference.name;
+    view.photograph = &*color;
+    view.record = &record;
+    view.depth = &estimate->depth;
+    view.normal = &estimate->normal;
+    view.min_textureness = static_cast<float>(options.tapa.min_textureness);
+    if (!WriteTapaPictures(
+            view, TapaPictureFolder(options_.tapa_debug, reference.name),
+            stopped)) {
+      return false;
+    }
+  }
   WriteDepthMap(MapPath("depth_maps", problem.reference, pass),
                 estimate->depth);
   WriteNormalMap(MapPath("normal_maps", problem.reference, pass),

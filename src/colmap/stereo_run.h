@@ -54,6 +54,8 @@ class StereoRun {
   OptionValues RecordedOptions(Pass pass) const;
   std::string MapPath(const std::string& kind, int view, Pass pass) const;
   bool WritesGraph(Pass pass) const;
+  bool WritesPictures(Pass pass) const;
+  void WarnOfMissingPictures() const;
   // Whether there is any map of a pass.
   bool HasMaps(Pass pass) const;
   // Whether all maps of a view are there. Throws Failure if one is damaged.

@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "src/eval/image_io.h"
+#include "src/pictures/image_io.h"
 
 namespace tapa {
 namespace {

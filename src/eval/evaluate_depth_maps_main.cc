@@ -18,12 +18,12 @@
 
 #include "src/eval/depth_map_io.h"
 #include "src/eval/depth_map_score.h"
-#include "src/eval/image_io.h"
-#include "src/eval/pictures.h"
 #include "src/eval/score_table.h"
 #include "src/eval/tolerance.h"
+#include "src/eval/view_picture.h"
 #include "src/eval/workspace.h"
 #include "src/mvs/tapa/textureness.h"
+#include "src/pictures/image_io.h"
 
 namespace tapa {
 namespace {

@@ -176,13 +176,13 @@ TEST(AtomicFile, StaleTemporariesAreRemoved) {
   EXPECT_EQ(folder.NumFiles(), 3);
 }
 
-TEST(PrepareMapFolder, MakesOrRefuses) {
+TEST(PrepareFolder, MakesOrRefuses) {
   const TestFolder folder;
-  PrepareMapFolder(folder.Path("x/y"));
+  PrepareFolder(folder.Path("x/y"), "maps");
   EXPECT_TRUE(boost::filesystem::is_directory(folder.Path("x/y")));
   EXPECT_TRUE(boost::filesystem::is_empty(folder.Path("x/y")));
   std::ofstream(folder.Path("file")) << "x";
-  EXPECT_THROW(PrepareMapFolder(folder.Path("file")), Failure);
+  EXPECT_THROW(PrepareFolder(folder.Path("file"), "maps"), Failure);
 }
 
 }  // namespace

@@ -141,6 +141,134 @@ class Switches(tiny.TestCase):
                 self.assert_one_error(result, "PatchMatchStereo." + name)
 
 
+class Pictures(tiny.TestCase):
+    """tapa_debug writes pictures of every view that the last pass computes."""
+
+    ALL = ["00_legend", "01_photograph", "02_textureness",
+           "03_fine_superpixels", "04_coarse_superpixels", "05_fine_planes",
+           "06_coarse_planes", "07_chosen_hypotheses", "08_swept_depth",
+           "09_filtered_depth", "10_plane_agreement", "11_origin",
+           "12_final_depth", "13_final_normals"]
+
+    def setUp(self):
+        super().setUp()
+        self.names = tiny.make_workspace(
+            self.folder, names=["view0.png", "view1.png", "left/view.png",
+                                "right/far/view.png"])
+
+    def run_stereo(self, **options):
+        return tiny.run_stereo(self.folder, **{
+            "tapa": 1, "tapa_debug": self.path("pictures"), **options})
+
+    def expect_pictures(self, view, missing=(), folder="pictures"):
+        folder = self.path(folder, view)
+        self.assertEqual(
+            sorted(os.listdir(folder)),
+            [name + ".png" for name in self.ALL if name not in missing])
+        for name in os.listdir(folder):
+            width, height, pixels = tiny.read_rgb_png(
+                os.path.join(folder, name))
+            self.assertEqual(len(pixels), height * (3 * width + 1))
+            if name != "00_legend.png":
+                self.assertEqual((width, height), (tiny.WIDTH, tiny.HEIGHT))
+
+    def test_every_view(self):
+        result = self.run_stereo()
+        self.assert_success(result)
+        self.assertNotIn("WARNING", result.stdout)
+        for name in self.names:
+            self.expect_pictures(name)
+        # It is written down nowhere, and the maps are the same without it.
+        self.assertNotIn("tapa_debug", read_record(self.folder))
+        maps = tiny.snapshot(self.folder)
+        other = self.path("other")
+        tiny.make_workspace(other, names=self.names)
+        self.assert_success(tiny.run_stereo(other, tapa=1))
+        self.assertEqual(maps, tiny.snapshot(other))
+
+    def test_photometric_pass_only(self):
+        # One iteration: no plane was fitted before refinement.
+        self.assert_success(self.run_stereo(geom_consistency=0))
+        self.expect_pictures(self.names[0])
+
+    def test_parts_that_are_off(self):
+        self.assert_success(self.run_stereo(tapa_coarse_superpixels=0,
+                                            tapa_refinement=0,
+                                            tapa_texture_weighting=0))
+        self.expect_pictures(self.names[0], missing=(
+            "04_coarse_superpixels", "06_coarse_planes",
+            "09_filtered_depth", "10_plane_agreement", "11_origin"))
+
+    def test_smaller_than_the_photograph(self):
+        self.assert_success(self.run_stereo(max_image_size=48))
+        width, height, _ = tiny.read_rgb_png(
+            self.path("pictures", self.names[2], "12_final_depth.png"))
+        self.assertEqual((width, height), (48, 32))
+
+    def test_views_that_have_maps(self):
+        self.assert_success(tiny.run_stereo(self.folder, tapa=1))
+        os.remove(tiny.map_path(self.folder, self.names[2]))
+        # What is left of other runs goes.
+        folder = self.path("pictures", self.names[2])
+        os.makedirs(folder)
+        for name in ("10_plane_agreement.png", "mine.png"):
+            with open(os.path.join(folder, name), "w") as file:
+                file.write("of another run")
+        result = self.run_stereo()
+        self.assert_success(result)
+        warnings = [line for line in result.stdout.splitlines()
+                    if line.startswith("WARNING")]
+        self.assertEqual(len(warnings), 1, result.stdout)
+        self.assertIn("3 of 4 views have their maps already", warnings[0])
+        self.assertEqual(os.listdir(self.path("pictures")), ["left"])
+        os.remove(os.path.join(folder, "mine.png"))
+        self.expect_pictures(self.names[2])
+
+    def expect_refusal(self, *texts, **options):
+        result = self.run_stereo(**options)
+        self.assert_one_error(result, *texts)
+        maps = [name for name in tiny.snapshot(self.folder)
+                if name.endswith(".bin")]
+        self.assertEqual(maps, [], "found out too late")
+
+    def test_folder_that_cannot_be_made(self):
+        with open(self.path("pictures"), "w"):
+            pass
+        self.expect_refusal(self.path("pictures"), "cannot be made",
+                            "the pictures of tapa_debug")
+
+    def test_folder_of_the_photographs(self):
+        # There, the folders of the pictures have the names of photographs.
+        self.expect_refusal(self.names[0], "cannot be made",
+                            tapa_debug=self.path("images"))
+
+    def test_folder_that_cannot_be_written(self):
+        self.expect_refusal("/proc", tapa_debug="/proc/pictures")
+
+    def test_picture_that_cannot_be_written(self):
+        # A folder stands where one of the last files has to go.
+        blocked = self.path("pictures", self.names[1], "12_final_depth.png")
+        os.makedirs(blocked)
+        result = self.run_stereo()
+        self.assert_one_error(result, "Cannot write", blocked)
+        self.assertFalse(os.path.exists(
+            tiny.map_path(self.folder, self.names[1])))
+        for folder, _, files in os.walk(self.path("pictures")):
+            for name in files:
+                self.assertTrue(name.endswith(".png"), "half-written " + name)
+                tiny.read_rgb_png(os.path.join(folder, name))
+        # It goes on from there.
+        os.rmdir(blocked)
+        self.assert_success(self.run_stereo())
+        for name in self.names:
+            self.expect_pictures(name)
+
+    def test_without_tapa(self):
+        self.expect_refusal("PatchMatchStereo.tapa_debug", "tapa is on",
+                            tapa=0)
+        self.assertFalse(os.path.exists(self.path("pictures")))
+
+
 class Record(tiny.TestCase):
     """A workspace's maps remember the options that made them."""
 

@@ -81,6 +81,28 @@ def write_png(path, width, height, pixels, channels=1):
                    chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
 
 
+def read_rgb_png(path):
+    """Returns width, height and the filtered rows of a PNG of 8-bit colour.
+
+    Fails unless the file is whole.
+    """
+    with open(path, "rb") as file:
+        data = file.read()
+    assert data[:8] == b"\x89PNG\r\n\x1a\n", path + " is no PNG"
+    chunks = {}
+    at = 8
+    while b"IEND" not in chunks:
+        size, kind = struct.unpack(">I4s", data[at:at + 8])
+        content = data[at + 8:at + 8 + size]
+        checksum, = struct.unpack(">I", data[at + 8 + size:at + 12 + size])
+        assert checksum == zlib.crc32(kind + content), path + " is damaged"
+        chunks[kind] = chunks.get(kind, b"") + content
+        at += 12 + size
+    width, height, bits, color = struct.unpack(">IIBB", chunks[b"IHDR"][:10])
+    assert (bits, color) == (8, 2), path + " is not in colour"
+    return width, height, zlib.decompress(chunks[b"IDAT"])
+
+
 def color_halves(path):
     """Gives a grey image of write_png a red and a blue half."""
     with open(path, "rb") as file:

@@ -1,4 +1,4 @@
-#include "src/eval/image_io.h"
+#include "src/pictures/image_io.h"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -83,15 +83,20 @@ Map<uint8_t> ReadGrey(const std::string& path, int width, int height) {
   return grey;
 }
 
+std::vector<unsigned char> EncodePng(const cv::Mat& image) {
+  std::vector<unsigned char> bytes;
+  if (!cv::imencode(".png", image, bytes)) {
+    throw std::runtime_error("a picture cannot be encoded");
+  }
+  return bytes;
+}
+
 void WritePng(const std::string& path, const cv::Mat& image) {
   std::error_code error;
   const std::filesystem::path folder =
       std::filesystem::path(path).parent_path();
   if (!folder.empty()) std::filesystem::create_directories(folder, error);
-  std::vector<unsigned char> bytes;
-  if (!cv::imencode(".png", image, bytes)) {
-    throw std::runtime_error("cannot encode " + path);
-  }
+  const std::vector<unsigned char> bytes = EncodePng(image);
   std::ofstream stream(path, std::ios::binary);
   stream.write(reinterpret_cast<const char*>(bytes.data()),
                static_cast<std::streamsize>(bytes.size()));

@@ -1,5 +1,5 @@
-#ifndef TAPA_SRC_EVAL_COLOR_MAP_H_
-#define TAPA_SRC_EVAL_COLOR_MAP_H_
+#ifndef TAPA_SRC_PICTURES_COLOR_MAP_H_
+#define TAPA_SRC_PICTURES_COLOR_MAP_H_
 
 #include <opencv2/core.hpp>
 
@@ -12,7 +12,6 @@ namespace tapa {
 // of colours (blue, green, red).
 
 inline const cv::Vec3b kNoEstimateColor(0, 0, 0);
-inline const cv::Vec3b kNoMeasurementColor(150, 150, 150);
 
 // Depths between which colours change, in scene units: 0 < near <= far.
 struct DepthRange {
@@ -40,19 +39,6 @@ cv::Mat ColorNormals(const Map<Vec3>& normal);
 // The colour of a single normal in the camera frame (x right, y down, z away).
 cv::Vec3b NormalColor(const Vec3& normal);
 
-// The relative errors at the ends of the error colours.
-constexpr float kLeastError = 0.001f;
-constexpr float kMostError = 0.1f;
-
-// Error relative to the true depth at the pixels of the ground truth, on a
-// logarithmic scale from green (0.1 % and less) over yellow (1 %) to red (10 %
-// and more); grey where nothing was measured. Sizes may differ as in
-// DepthMapScorer.
-cv::Mat ColorError(const Map<float>& depth, const Map<float>& ground_truth);
-
-// The colour of a single relative error.
-cv::Vec3b ErrorColor(float relative_error);
-
 }  // namespace tapa
 
-#endif  // TAPA_SRC_EVAL_COLOR_MAP_H_
+#endif  // TAPA_SRC_PICTURES_COLOR_MAP_H_

@@ -1,5 +1,5 @@
-#ifndef TAPA_SRC_EVAL_PICTURES_H_
-#define TAPA_SRC_EVAL_PICTURES_H_
+#ifndef TAPA_SRC_EVAL_VIEW_PICTURE_H_
+#define TAPA_SRC_EVAL_VIEW_PICTURE_H_
 
 #include <opencv2/core.hpp>
 #include <string>
@@ -32,4 +32,4 @@ cv::Mat DrawView(const ViewPicture& view);
 
 }  // namespace tapa
 
-#endif  // TAPA_SRC_EVAL_PICTURES_H_
+#endif  // TAPA_SRC_EVAL_VIEW_PICTURE_H_

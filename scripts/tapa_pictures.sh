@@ -1,0 +1,81 @@
+#!/usr/bin/env bash
+# Makes the pictures of docs/tapa.md: what TAPA does with one view of the
+# built-in example.
+#
+#   scripts/tapa_pictures.sh [OUT [OPTION ...]]
+#
+# The pictures go to OUT (docs/pictures/tapa). What follows goes to
+# patch_match_stereo, for example --PatchMatchStereo.seed 1. VIEW names another
+# view than room_05.jpg, WORK another folder than build/tapa_pictures for the
+# workspace, which is made anew. Needs Debian's package python3-opencv, to make
+# JPEGs.
+set -euo pipefail
+
+root=$(cd "$(dirname "$0")/.." && pwd)
+bin=${TAPA_BIN_DIR:-$root/build/bin}
+data=$root/examples/room
+view=${VIEW:-room_05.jpg}
+work=${WORK:-$root/build/tapa_pictures}
+out=${1:-$root/docs/pictures/tapa}
+[[ $# -eq 0 ]] || shift
+
+fail() {
+  echo "ERROR: $*" >&2
+  exit 1
+}
+
+[[ -x $bin/colmap ]] || fail "$bin has no colmap; run scripts/build.sh first"
+[[ -f $data/images/$view ]] || fail "$data/images has no $view"
+/usr/bin/python3 -c 'import cv2' 2>/dev/null ||
+  fail "OpenCV for Python is missing; as root, run: apt-get install python3-opencv"
+
+log=$work/stereo.log
+mkdir -p "$work"
+rm -rf "$work"/{workspace,pictures} "$log"
+"$root/scripts/make_workspace.sh" "$data" "$work/workspace" >/dev/null
+stereo() {
+  echo "Computing $1 ..."
+  shift
+  "$bin/colmap" patch_match_stereo --workspace_path "$work/workspace" \
+    --PatchMatchStereo.tapa 1 "$@" >>"$log" 2>&1 ||
+    fail "$(grep -m 1 '^ERROR' "$log" || echo "it failed"); all output is in $log"
+}
+# All maps that the geometric pass of one view may need, as the photometric pass
+# before it would make them; then that one.
+stereo "photometric maps" "$@" --PatchMatchStereo.geom_consistency 0 \
+  --PatchMatchStereo.filter 0 --PatchMatchStereo.tapa_refinement 0
+config=$work/workspace/stereo/patch-match.cfg
+grep -A 1 -Fx "$view" "$config" >"$config.tmp"
+mv "$config.tmp" "$config"
+stereo "$view" "$@" --PatchMatchStereo.tapa_debug "$work/pictures"
+
+# Photographs as JPEG; colours that stand for something keep their edges better
+# in a PNG of few colours, which for most of them is also smaller.
+mkdir -p "$out"
+/usr/bin/python3 - "$work/pictures/$view" "$out" <<'PYTHON'
+import os
+import sys
+
+import cv2
+
+source, out = sys.argv[1:]
+total = 0
+for name in sorted(os.listdir(source)):
+    image = cv2.imread(os.path.join(source, name))
+    best = None
+    for extension, options in (
+            (".png", [cv2.IMWRITE_PNG_COMPRESSION, 9]),
+            (".jpg", [cv2.IMWRITE_JPEG_QUALITY, 85,
+                      cv2.IMWRITE_JPEG_OPTIMIZE, 1])):
+        data = cv2.imencode(extension, image, options)[1].tobytes()
+        if best is None or len(data) < len(best[1]):
+            best = extension, data
+    stem = os.path.splitext(name)[0]
+    for old in (".png", ".jpg"):
+        if os.path.exists(os.path.join(out, stem + old)):
+            os.remove(os.path.join(out, stem + old))
+    with open(os.path.join(out, stem + best[0]), "wb") as file:
+        file.write(best[1])
+    total += len(best[1])
+print("%s: %d kB" % (out, total / 1000))
+PYTHON

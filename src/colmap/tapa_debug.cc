@@ -1,0 +1,46 @@
+#include "src/colmap/tapa_debug.h"
+
+#include <unistd.h>
+
+#include <vector>
+
+#include "src/colmap/atomic_file.h"
+#include "src/pictures/image_io.h"
+#include "util/misc.h"
+
+namespace tapa {
+namespace {
+
+std::string PathOf(const std::string& folder, const std::string& picture) {
+  return colmap::JoinPaths(folder, picture + ".png");
+}
+
+}  // namespace
+
+std::string TapaPictureFolder(const std::string& root,
+                              const std::string& image_name) {
+  return colmap::JoinPaths(root, image_name);
+}
+
+bool WriteTapaPictures(const TapaView& view, const std::string& folder,
+                       const std::function<bool()>& stopped) {
+  if (stopped()) {
+    return false;
+  }
+  const std::vector<NamedPicture> pictures = DrawTapaPictures(view);
+  for (const std::string& name : TapaPictureNames()) {
+    unlink(PathOf(folder, name).c_str());
+  }
+  for (const NamedPicture& picture : pictures) {
+    if (stopped()) {
+      return false;
+    }
+    const std::vector<unsigned char> bytes = EncodePng(picture.image);
+    AtomicFile file(PathOf(folder, picture.name));
+    file.Write(bytes.data(), bytes.size());
+    file.Commit();
+  }
+  return true;
+}
+
+}  // namespace tapa
