@@ -49,8 +49,8 @@ grep -A 1 -Fx "$view" "$config" >"$config.tmp"
 mv "$config.tmp" "$config"
 stereo "$view" "$@" --PatchMatchStereo.tapa_debug "$work/pictures"
 
-# Photographs as JPEG; colours that stand for something keep their edges better
-# in a PNG of few colours, which for most of them is also smaller.
+# Names must not depend on the content: the document links them. JPEG is smaller
+# for all but the picture of few colours in large areas.
 mkdir -p "$out"
 /usr/bin/python3 - "$work/pictures/$view" "$out" <<'PYTHON'
 import os
@@ -58,24 +58,29 @@ import sys
 
 import cv2
 
+MAX_BYTES = 690000
+
 source, out = sys.argv[1:]
-total = 0
-for name in sorted(os.listdir(source)):
-    image = cv2.imread(os.path.join(source, name))
-    best = None
-    for extension, options in (
-            (".png", [cv2.IMWRITE_PNG_COMPRESSION, 9]),
-            (".jpg", [cv2.IMWRITE_JPEG_QUALITY, 85,
-                      cv2.IMWRITE_JPEG_OPTIMIZE, 1])):
-        data = cv2.imencode(extension, image, options)[1].tobytes()
-        if best is None or len(data) < len(best[1]):
-            best = extension, data
-    stem = os.path.splitext(name)[0]
-    for old in (".png", ".jpg"):
-        if os.path.exists(os.path.join(out, stem + old)):
-            os.remove(os.path.join(out, stem + old))
-    with open(os.path.join(out, stem + best[0]), "wb") as file:
-        file.write(best[1])
-    total += len(best[1])
-print("%s: %d kB" % (out, total / 1000))
+images = {os.path.splitext(name)[0]: cv2.imread(os.path.join(source, name))
+          for name in sorted(os.listdir(source))}
+
+
+def encode(stem, image, quality):
+    if stem == "11_origin":
+        return ".png", cv2.imencode(
+            ".png", image, [cv2.IMWRITE_PNG_COMPRESSION, 9])[1].tobytes()
+    return ".jpg", cv2.imencode(".jpg", image, [
+        cv2.IMWRITE_JPEG_QUALITY, quality,
+        cv2.IMWRITE_JPEG_OPTIMIZE, 1])[1].tobytes()
+
+
+for quality in range(90, 20, -5):
+    files = {stem: encode(stem, images[stem], quality) for stem in images}
+    total = sum(len(data) for _, data in files.values())
+    if total <= MAX_BYTES:
+        break
+for stem, (extension, data) in files.items():
+    with open(os.path.join(out, stem + extension), "wb") as file:
+        file.write(data)
+print("%s: %d kB, JPEG quality %d" % (out, total / 1000, quality))
 PYTHON
