@@ -49,9 +49,10 @@ struct TapaOptions {
   // How often the fill is repeated: it reaches fill_radius pixels each time.
   int fill_rounds = 1;
 
-  // Beyond the paper: only estimates that source views support stay, one view
-  // fewer than Options::filter_min_num_consistent; planes of superpixels,
-  // fitted to those that reach it, replace the others (docs/tapa.md).
+  // Beyond the paper: only estimates stay that source views support, one view
+  // fewer than Options::filter_min_num_consistent but at least one. Planes of
+  // superpixels, fitted to those that reach that number, replace the others
+  // (docs/tapa.md).
   bool completion = true;
   // Share of the estimates nearby that have to lie on the plane, 0 to 1.
   double completion_agreement = 0.5;

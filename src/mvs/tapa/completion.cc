@@ -39,11 +39,6 @@ std::vector<Box> BoundingBoxes(const Superpixels& superpixels) {
 // any rectangle: sums over all pixels above and to the left.
 class EstimateCounts {
  public:
-  struct Counts {
-    int all = 0;
-    int on_plane = 0;
-  };
-
   EstimateCounts(const RefCamera& camera, const Map<float>& depth,
                  const Segmentation& segmentation, int label, const Box& box)
       : box_(box),
@@ -68,7 +63,24 @@ class EstimateCounts {
     }
   }
 
-  Counts All() const { return sums_.back(); }
+  // As LocalPlanes::agreement.
+  float Agreement(int row, int col, int radius) const {
+    constexpr float kFarWeight = 0.2f;
+    constexpr float kDoubt = 0.005f;
+    const float size = 2.0f * radius + 1;
+    const Counts near = Around(row, col, radius);
+    const Counts& all = sums_.back();
+    const float num_on_plane =
+        near.on_plane + kFarWeight * (all.on_plane - near.on_plane);
+    const float num_all = near.all + kFarWeight * (all.all - near.all);
+    return num_on_plane / (num_all + kDoubt * size * size);
+  }
+
+ private:
+  struct Counts {
+    int all = 0;
+    int on_plane = 0;
+  };
 
   Counts Around(int row, int col, int radius) const {
     const int top = std::max(row - radius, box_.top);
@@ -83,7 +95,6 @@ class EstimateCounts {
             d.on_plane - b.on_plane - c.on_plane + a.on_plane};
   }
 
- private:
   // Sums over the pixels above `row` and to the left of `col`.
   Counts& At(int row, int col) {
     return sums_[static_cast<size_t>(row - box_.top) * stride_ + col -
@@ -117,14 +128,6 @@ void RemoveUnsupported(const std::vector<uint8_t>& consistent, int num_sources,
 LocalPlanes FindLocalPlanes(const Problem& problem, const RefCamera& camera,
                             const Map<float>& depth,
                             const Segmentation& segmentation, int radius) {
-  // Weight of the estimates outside of the square.
-  constexpr float kFarWeight = 0.2f;
-  // Share of the square that is taken to speak against every plane.
-  constexpr float kDoubt = 0.005f;
-  const auto weigh = [](int near, int all) {
-    return near + kFarWeight * (all - near);
-  };
-  const float doubt = kDoubt * (2.0f * radius + 1) * (2.0f * radius + 1);
   const Map<uint16_t>& labels = segmentation.superpixels.labels;
   LocalPlanes result;
   result.depth = Map<float>(labels.width(), labels.height());
@@ -138,22 +141,18 @@ LocalPlanes FindLocalPlanes(const Problem& problem, const RefCamera& camera,
     }
     const Box& box = boxes[label];
     const EstimateCounts counts(camera, depth, segmentation, label, box);
-    const auto all = counts.All();
     for (int row = box.top; row < box.bottom; ++row) {
       for (int col = box.left; col < box.right; ++col) {
         if (labels.At(row, col) != label) {
           continue;
         }
         const Plane plane = PlaneAt(fitted.plane, camera.Ray(row, col));
-        if (!(plane.depth >= problem.depth_min &&
-              plane.depth <= problem.depth_max)) {
-          continue;
+        if (plane.depth >= problem.depth_min &&
+            plane.depth <= problem.depth_max) {
+          result.depth.At(row, col) = plane.depth;
+          result.normal.At(row, col) = plane.normal;
+          result.agreement.At(row, col) = counts.Agreement(row, col, radius);
         }
-        const auto near = counts.Around(row, col, radius);
-        result.depth.At(row, col) = plane.depth;
-        result.normal.At(row, col) = plane.normal;
-        result.agreement.At(row, col) = weigh(near.on_plane, all.on_plane) /
-                                        (weigh(near.all, all.all) + doubt);
       }
     }
   }

@@ -108,9 +108,10 @@ void TapaStages::Refine(Estimate* estimate) {
 
   Map<float> trusted;
   if (options_.tapa.completion) {
+    const int num_views = options_.filter_min_num_consistent;
     trusted = depth;
-    KeepSupported(options_.filter_min_num_consistent, *estimate, &trusted);
-    KeepSupported(options_.filter_min_num_consistent - 1, *estimate, &depth);
+    KeepSupported(num_views, *estimate, &trusted);
+    KeepSupported(num_views > 1 ? num_views - 1 : num_views, *estimate, &depth);
   } else {
     RemoveSpeckles(SpeckleContinuity(), MaxSpeckleSize(), &depth);
   }
