@@ -116,8 +116,9 @@ def main():
             parser.error(f"unknown method {method}; there are "
                          + ", ".join(METHODS))
     seeds = [int(seed) for seed in arguments.seeds.split(",")]
-    # Low texture is scored at the last of the tolerances in metres.
-    index = len(arguments.tolerances.split(",")) - 1
+    # Low texture is scored at 10 cm, or what comes closest to it.
+    metres = [float(value) for value in arguments.tolerances.split(",")]
+    index = min(range(len(metres)), key=lambda i: abs(metres[i] - 0.1))
 
     header_printed = False
     for method in methods:

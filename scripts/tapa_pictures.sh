@@ -4,7 +4,7 @@
 #
 #   scripts/tapa_pictures.sh [OUT [OPTION ...]]
 #
-# The pictures go to OUT (docs/pictures/tapa). What follows goes to
+# The pictures go to OUT (docs/images/tapa). What follows goes to
 # patch_match_stereo, for example --PatchMatchStereo.seed 1. VIEW names another
 # view than room_05.jpg, WORK another folder than build/tapa_pictures for the
 # workspace, which is made anew. Needs Debian's package python3-opencv, to make
@@ -16,7 +16,7 @@ bin=${TAPA_BIN_DIR:-$root/build/bin}
 data=$root/examples/room
 view=${VIEW:-room_05.jpg}
 work=${WORK:-$root/build/tapa_pictures}
-out=${1:-$root/docs/pictures/tapa}
+out=${1:-$root/docs/images/tapa}
 [[ $# -eq 0 ]] || shift
 
 fail() {
