@@ -77,8 +77,10 @@ CASES = {
 
 MAX_CPU_SECONDS_PER_MEGAPIXEL = 400
 
-# Of TAPA's CPU time to that of COLMAP's algorithm.
-MAX_TIME_RATIO = 1.6
+# Of TAPA's CPU time to that of COLMAP's algorithm. 1.25 was measured
+# (docs/results.md); the two runs follow each other, and other work on the machine
+# may slow down one of them.
+MAX_TIME_RATIO = 2
 
 
 def find_value(scores, name, unit, tolerance):
