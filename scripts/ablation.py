@@ -108,8 +108,11 @@ def main():
     parser.add_argument("--seeds", default="0")
     parser.add_argument("--tolerances", default="0.05,0.1")
     parser.add_argument("--relative_tolerances", default="1")
-    parser.add_argument("options", nargs="*")
-    arguments = parser.parse_args()
+    # argparse cannot tell options after -- from a third position.
+    words = sys.argv[1:]
+    end = words.index("--") if "--" in words else len(words)
+    arguments = parser.parse_args(words[:end])
+    arguments.options = words[end + 1:]
     methods = arguments.methods.split(",")
     for method in methods:
         if method not in METHODS:
