@@ -70,7 +70,7 @@ struct HostOptions {
   double tapa_completion_agreement = 0.5;
   // What is nearby: half size of a square, as a share of the image's width.
   double tapa_completion_radius = 0.1;
-  // Below this textureness planes replace supported estimates, too.
+  // Below this textureness planes replace estimates of little support, too.
   double tapa_completion_textureness = 0.75;
   // Share of a window's pixels that have to speak for a fill, 0 to 1.
   double tapa_completion_fill_share = 0.5;
@@ -147,9 +147,9 @@ struct HostOptions {
     visit(S("tapa_completion_radius"), &options->tapa_completion_radius,
           S("What is nearby: half size of a square, as a share of the image's "
             "width"));
-    visit(S("tapa_completion_textureness"),
-          &options->tapa_completion_textureness,
-          S("Below this textureness planes replace supported estimates, too"));
+    visit(
+        S("tapa_completion_textureness"), &options->tapa_completion_textureness,
+        S("Below this textureness planes replace estimates of little support"));
     visit(S("tapa_completion_fill_share"), &options->tapa_completion_fill_share,
           S("Share of a window's pixels that have to speak for a fill, 0 to "
             "1"));

@@ -58,7 +58,8 @@ struct TapaOptions {
   double completion_agreement = 0.5;
   // What is nearby: half size of a square, as a share of the image's width.
   double completion_radius = 0.1;
-  // Below this textureness planes replace supported estimates, too.
+  // Below this textureness planes replace estimates that are supported but not
+  // by that number of views, too.
   double completion_textureness = 0.75;
   // Share of a window's pixels that have to speak for the fill of a missing
   // one, 0 to 1. Without completion any will do, as in the paper.

@@ -166,17 +166,23 @@ TEST(Completion, ReplacesMissingEstimatesAndThoseOfLittleTexture) {
   Map<float> textureness(6, 1, 0.9f);
   textureness.At(0, 2) = 0.7f;
   // Missing, textured, flat, missing, missing without agreement, without plane.
+  Map<float> trusted(6, 1);
   Map<float> depth(6, 1);
   depth.At(0, 1) = depth.At(0, 2) = 9;
   Map<Vec3> normal(6, 1);
   Map<uint8_t> origin(6, 1, kNoEstimate);
-  CompleteWithPlanes(options, planes, textureness, &depth, &normal, &origin);
+  CompleteWithPlanes(options, planes, textureness, trusted, &depth, &normal,
+                     &origin);
   const float expected[] = {2, 9, 2, 2, 0, 0};
   for (int i = 0; i < 6; ++i) {
     EXPECT_EQ(depth.At(0, i), expected[i]) << i;
     EXPECT_EQ(origin.At(0, i), expected[i] == 2 ? kFromPlane : kNoEstimate);
     EXPECT_EQ(normal.At(0, i).z, expected[i] == 2 ? -1 : 0);
   }
+  depth.At(0, 2) = trusted.At(0, 2) = 9;
+  CompleteWithPlanes(options, planes, textureness, trusted, &depth, &normal,
+                     &origin);
+  EXPECT_EQ(depth.At(0, 2), 9);
 }
 
 TEST(Completion, RemovesEstimatesThatTooFewViewsSupport) {

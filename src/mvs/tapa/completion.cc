@@ -170,11 +170,14 @@ void MergeLocalPlanes(const LocalPlanes& other, LocalPlanes* planes) {
 }
 
 void CompleteWithPlanes(const TapaOptions& options, const LocalPlanes& planes,
-                        const Map<float>& textureness, Map<float>* depth,
+                        const Map<float>& textureness,
+                        const Map<float>& trusted, Map<float>* depth,
                         Map<Vec3>* normal, Map<uint8_t>* origin) {
   for (size_t i = 0; i < depth->size(); ++i) {
-    const bool wanted = !(depth->data()[i] > 0) ||
-                        textureness.data()[i] < options.completion_textureness;
+    const bool wanted =
+        !(depth->data()[i] > 0) ||
+        (!(trusted.data()[i] > 0) &&
+         textureness.data()[i] < options.completion_textureness);
     if (wanted && planes.depth.data()[i] > 0 &&
         planes.agreement.data()[i] >= options.completion_agreement) {
       depth->data()[i] = planes.depth.data()[i];

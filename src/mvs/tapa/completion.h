@@ -45,12 +45,13 @@ LocalPlanes FindLocalPlanes(const Problem& problem, const RefCamera& camera,
 void MergeLocalPlanes(const LocalPlanes& other, LocalPlanes* planes);
 
 // Gives pixels the plane that at least options.completion_agreement of the
-// estimates near them lie on, where they have no estimate or a textureness
-// below options.completion_textureness: there, what most estimates around say
-// is worth more than the pixel's own. Notes
-// their origin.
+// estimates near them lie on, where they have no estimate, or one that is not
+// trusted (0 in `trusted`) at a textureness below
+// options.completion_textureness: there, what most estimates around say is
+// worth more than the pixel's own. Notes their origin.
 void CompleteWithPlanes(const TapaOptions& options, const LocalPlanes& planes,
-                        const Map<float>& textureness, Map<float>* depth,
+                        const Map<float>& textureness,
+                        const Map<float>& trusted, Map<float>* depth,
                         Map<Vec3>* normal, Map<uint8_t>* origin);
 
 }  // namespace tapa

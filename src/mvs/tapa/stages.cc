@@ -158,7 +158,7 @@ void TapaStages::Complete(const Map<float>& trusted, Estimate* estimate) {
     }
   }
   if (!planes.depth.empty()) {
-    CompleteWithPlanes(options_.tapa, planes, record_.textureness,
+    CompleteWithPlanes(options_.tapa, planes, record_.textureness, trusted,
                        &estimate->depth, &estimate->normal, &record_.origin);
     record_.agreement = std::move(planes.agreement);
   }
