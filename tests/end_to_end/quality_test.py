@@ -77,7 +77,7 @@ CASES = {
 
 MAX_CPU_SECONDS_PER_MEGAPIXEL = 400
 
-# Of TAPA's CPU time to that of COLMAP's algorithm. 1.25 was measured
+# Of TAPA's CPU time to that of COLMAP's algorithm. 1.23 was measured
 # (docs/results.md); the two runs follow each other, and other work on the machine
 # may slow down one of them.
 MAX_TIME_RATIO = 2
