@@ -1,0 +1,1 @@
+"""What scripts/eth3d and scripts/benchmark are made of."""
