@@ -1,1 +1,15 @@
-"""What scripts/eth3d and scripts/benchmark are made of."""
+"""What scripts/benchmark and scripts/eth3d are made of.
+
+A run is one method with one seed on one set of photographs. It has a folder,
+OUT/SET/METHOD-SEED, which is a COLMAP workspace with these files beside it:
+
+    record.json         options, version, machine, times, memory (stereo_run.py)
+    fused.ply           points, fused with TAPA's thresholds
+    fused_default.ply   points, fused with COLMAP's own thresholds
+    depth_scores.json   scores of the depth maps (depth_scores.py)
+    cloud_scores.json   scores of the points (cloud_scores.py)
+    *.log               what the programs printed
+
+Shares are 0 to 1, lengths in metres, times in seconds, memory in bytes.
+Functions raise processes.Failure, whose text is one line for the user.
+"""

@@ -1,0 +1,97 @@
+"""Scores of points against laser scans, as ETH3D defines them.
+
+cloud_scores.json has, by the name of the cloud (FOLDER/NAME.ply),
+
+    {"tolerances": [..], "completeness": [..], "accuracy": [..], "f1": [..]}
+
+evaluator is evaluate_point_cloud or ETH3D's own program, which takes the same
+options and prints the same lines.
+"""
+
+import os
+import re
+
+from . import files, machine, processes
+
+# Metres; those of the paper's Table 2.
+TOLERANCES = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5]
+
+_LINES = {"tolerances": "Tolerances", "completeness": "Completenesses",
+          "accuracy": "Accuracies", "f1": "F1-scores"}
+
+
+def default_evaluator(bin_dir=None):
+    """Path of evaluate_point_cloud. Raises Failure if it is not built."""
+    return machine.find_program(bin_dir or machine.default_bin_dir(),
+                                "evaluate_point_cloud")
+
+
+def command(evaluator, cloud, scans, tolerances=None):
+    """cloud: a PLY; scans: a MeshLab project of scans with their poses."""
+    return [evaluator, "--tolerances",
+            ",".join(f"{value:g}" for value in tolerances or TOLERANCES),
+            "--reconstruction_ply_path", cloud,
+            "--ground_truth_mlp_path", scans]
+
+
+def parse(text):
+    """The score in what an evaluator printed."""
+    result = {}
+    for key, name in _LINES.items():
+        matches = re.findall(rf"^{name}: (.*)$", text, re.MULTILINE)
+        if not matches:
+            raise processes.Failure(f"the evaluator printed no line {name}:")
+        try:
+            result[key] = [float(word) for word in matches[-1].split()]
+        except ValueError as error:
+            raise processes.Failure(f"the evaluator printed no numbers behind "
+                                    f"{name}: {matches[-1]}") from error
+    if len({len(values) for values in result.values()}) != 1:
+        raise processes.Failure("the evaluator printed lines of different "
+                                "length")
+    return result
+
+
+def score(folder, clouds, scans, evaluator=None, tolerances=None,
+          paths=None):
+    """Scores clouds, by name, unless FOLDER/cloud_scores.json has them.
+
+    paths: where a cloud is not FOLDER/NAME.ply, its path by name. Returns all
+    that is in cloud_scores.json.
+    """
+    path = os.path.join(folder, "cloud_scores.json")
+    scores = files.read_json(path) or {}
+    for name in clouds:
+        if _covers(scores.get(name), tolerances or TOLERANCES):
+            continue
+        cloud = (paths or {}).get(name, os.path.join(folder, name + ".ply"))
+        log = os.path.join(folder, f"cloud_scores_{name}.log")
+        if os.path.exists(log):
+            os.remove(log)
+        processes.say(f"{folder}: score of {name}.ply ...")
+        processes.run(command(evaluator or default_evaluator(), cloud, scans,
+                              tolerances), log)
+        with open(log, encoding="utf-8", errors="replace") as file:
+            scores[name] = parse(file.read())
+        files.write_json(path, scores)
+    return scores
+
+
+def _covers(score_, tolerances):
+    return score_ is not None and all(
+        any(abs(value - there) < 1e-9 for there in score_["tolerances"])
+        for value in tolerances)
+
+
+def load(folder):
+    """The scores in a folder, {} where there are none."""
+    return files.read_json(os.path.join(folder, "cloud_scores.json")) or {}
+
+
+def at(score_, value):
+    """{"completeness", "accuracy", "f1"} at a tolerance, or None."""
+    for i, tolerance in enumerate(score_["tolerances"]):
+        if abs(tolerance - value) < 1e-9:
+            return {key: score_[key][i] for key in _LINES
+                    if key != "tolerances"}
+    return None

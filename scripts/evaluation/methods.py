@@ -1,0 +1,61 @@
+"""The methods that are compared, as options of the program."""
+
+_TAPA = ["--PatchMatchStereo.tapa", "1"]
+_PAPER = _TAPA + ["--PatchMatchStereo.tapa_completion", "0"]
+
+
+def _without(part):
+    return ["--PatchMatchStereo.tapa_" + part, "0"]
+
+
+# Options of patch_match_stereo by name. tapa is what this program does, paper
+# what the paper describes; the others leave a part out.
+METHODS = {
+    "plain": [],
+    "tapa": _TAPA,
+    "tapa-weights": _TAPA + _without("texture_weighting"),
+    "tapa-coarse": _TAPA + _without("coarse_superpixels"),
+    "tapa-fine": _TAPA + _without("fine_superpixels"),
+    "tapa-refinement": _TAPA + _without("refinement"),
+    "paper": _PAPER,
+    "paper-weights": _PAPER + _without("texture_weighting"),
+    "paper-coarse": _PAPER + _without("coarse_superpixels"),
+    "paper-fine": _PAPER + _without("fine_superpixels"),
+    "paper-refinement": _PAPER + _without("refinement"),
+}
+
+# What a reader sees.
+LABELS = {
+    "plain": "COLMAP",
+    "tapa": "TAPA",
+    "tapa-weights": "TAPA without weights",
+    "tapa-coarse": "TAPA without coarse superpixels",
+    "tapa-fine": "TAPA without fine superpixels",
+    "tapa-refinement": "TAPA without refinement",
+    "paper": "paper's TAPA",
+    "paper-weights": "paper's TAPA without weights",
+    "paper-coarse": "paper's TAPA without coarse superpixels",
+    "paper-fine": "paper's TAPA without fine superpixels",
+    "paper-refinement": "paper's TAPA without refinement",
+}
+
+# The paper's Table 2, column by column: our method for each.
+ABLATION = ["plain", "paper-weights", "paper-coarse", "paper-fine",
+            "paper-refinement", "paper"]
+
+
+def fusion_options(reprojection_error, normal_error=20):
+    """Options of stereo_fusion. Pixels and degrees."""
+    return ["--StereoFusion.max_reproj_error", f"{reprojection_error:g}",
+            "--StereoFusion.max_normal_error", f"{normal_error:g}"]
+
+
+# The paper's section 6: half of COLMAP's reprojection error of 2 pixels with
+# photographs of high resolution, a quarter with low; twice its normal error.
+FUSION_HIGH = fusion_options(1)
+FUSION_LOW = fusion_options(0.5)
+
+
+def label(method):
+    """The name of a method, or of something else to compare with, in words."""
+    return LABELS.get(method, method)

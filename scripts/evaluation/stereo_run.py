@@ -1,0 +1,275 @@
+"""One run: from photographs and poses to depth maps and points.
+
+    run = Run(data, folder, "room", "tapa", seed=0)
+    record = complete(run)      # raises Failure; the next call goes on
+
+The folder becomes a COLMAP workspace (scripts/make_workspace.sh). A step that is
+done is not done again, and a workspace of scripts/evaluate_dataset.sh can be
+continued. record.json says how the results were made:
+
+    set, method, seed    as in Run
+    options              of patch_match_stereo, with those of the method
+    sources, every       as in make_workspace.sh
+    version, machine     text; see machine.describe()
+    views, image_size    number of depth maps; [width, height] of the first
+    done                 steps that are complete: stereo and the names of fusions
+    seconds, cpu_seconds, peak_memory_bytes
+                         by step. Times add up over the parts of a run that was
+                         stopped. null: not known, as another program did it
+    failed               null, or {"step", "message"} of the last attempt
+"""
+
+import dataclasses
+import glob
+import os
+
+from . import files, machine, processes
+from .methods import FUSION_HIGH, METHODS
+
+_SCRIPTS = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+_MEASURES = ("seconds", "cpu_seconds", "peak_memory_bytes")
+
+# Options of stereo_fusion by the name of the cloud, FOLDER/NAME.ply.
+FUSIONS = {"fused": FUSION_HIGH, "fused_default": []}
+
+
+@dataclasses.dataclass
+class Run:
+    """What to run. data has images/ and sparse/, undistorted."""
+    data: str
+    folder: str
+    set: str
+    method: str
+    seed: int = 0
+    # More options of patch_match_stereo.
+    options: list = dataclasses.field(default_factory=list)
+    fusions: dict = dataclasses.field(default_factory=lambda: dict(FUSIONS))
+    sources: int = 10
+    every: int = 1
+    bin_dir: str = dataclasses.field(default_factory=machine.default_bin_dir)
+
+    def path(self, *parts):
+        return os.path.join(self.folder, *parts)
+
+
+def folder_name(method, seed):
+    return f"{method}-{seed}"
+
+
+def size_options(image_size):
+    """Options that limit photographs to so many pixels; None: full size."""
+    if image_size is None:
+        return []
+    return ["--PatchMatchStereo.max_image_size", str(image_size)]
+
+
+def all_options(run):
+    """Options of patch_match_stereo with those of the method and the seed."""
+    return ["--PatchMatchStereo.seed", str(run.seed), *METHODS[run.method],
+            *run.options]
+
+
+def workspace_command(run):
+    return [os.path.join(_SCRIPTS, "make_workspace.sh"), run.data, run.folder,
+            str(run.sources), str(run.every)]
+
+
+def stereo_command(run):
+    return [os.path.join(run.bin_dir, "colmap"), "patch_match_stereo",
+            "--workspace_path", run.folder, *all_options(run)]
+
+
+def fusion_command(run, name):
+    """Fuses into FOLDER/NAME.new.ply, which is renamed when it is complete."""
+    return [os.path.join(run.bin_dir, "colmap"), "stereo_fusion",
+            "--workspace_path", run.folder, "--output_path",
+            run.path(name + ".new.ply"), *run.fusions[name]]
+
+
+def load_record(folder):
+    """The record of a run, None where there is none."""
+    return files.read_json(os.path.join(folder, "record.json"))
+
+
+def total(record, name="fused", measure="seconds"):
+    """A time of stereo and one fusion together; None if it is not known."""
+    values = [record[measure].get(step) for step in ("stereo", name)]
+    return None if None in values else sum(values)
+
+
+def is_complete(run):
+    record = load_record(run.folder)
+    return record is not None and all(
+        step in record["done"] for step in ["stereo", *run.fusions])
+
+
+def missing_commands(run):
+    """The commands that complete() would run, in order."""
+    record = load_record(run.folder)
+    done = record["done"] if record else []
+    commands = []
+    if "stereo" not in done:
+        commands += [workspace_command(run), stereo_command(run)]
+    for name in run.fusions:
+        if not os.path.exists(run.path(name + ".ply")):
+            commands.append(fusion_command(run, name))
+    return commands
+
+
+def complete(run):
+    """Does what is missing. Returns the record.
+
+    Raises Failure or Interrupted; what was done stays, and is recorded.
+    """
+    record = _open_record(run)
+    if "stereo" not in record["done"]:
+        _make_workspace(run, record)
+        processes.say(f"{run.folder}: stereo ...")
+        _step(run, record, "stereo", stereo_command(run), "stereo.log")
+        record["views"], record["image_size"] = _describe_maps(run.folder)
+        _finish(run, record, "stereo")
+    for name in run.fusions:
+        _fuse(run, record, name)
+    return record
+
+
+def _fuse(run, record, name):
+    if name in record["done"] and os.path.exists(run.path(name + ".ply")):
+        return
+    if not os.path.exists(run.path(name + ".ply")):
+        processes.say(f"{run.folder}: {name}.ply ...")
+        for measure in _MEASURES:  # It begins anew.
+            record[measure].pop(name, None)
+        _step(run, record, name, fusion_command(run, name), "fusion.log")
+        for end in (".ply.vis", ".ply"):
+            new = run.path(name + ".new" + end)
+            if os.path.exists(new):
+                os.replace(new, run.path(name + end))
+    _finish(run, record, name)
+
+
+def _new_record(run):
+    record = {
+        "set": run.set, "method": run.method, "seed": run.seed,
+        "options": all_options(run), "sources": run.sources,
+        "every": run.every,
+        "version": machine.program_version(run.bin_dir),
+        "machine": machine.describe(), "views": None, "image_size": None,
+        "done": [], "failed": None}
+    # What is there already took a time that nobody knows.
+    unknown = [name for name in run.fusions
+               if os.path.exists(run.path(name + ".ply"))]
+    if _map_paths(run.folder):
+        unknown.append("stereo")
+    for measure in _MEASURES:
+        record[measure] = {step: None for step in unknown}
+    return record
+
+
+def _open_record(run):
+    machine.find_program(run.bin_dir, "colmap")
+    record = load_record(run.folder)
+    if record is None:
+        return _new_record(run)
+    for key, value in (("options", all_options(run)),
+                       ("sources", run.sources), ("every", run.every)):
+        if record[key] != value:
+            if isinstance(value, list):
+                value, record[key] = (" ".join(v) for v in (value, record[key]))
+            raise processes.Failure(
+                f"{run.folder} was made with {key} {record[key]}, not {value}; "
+                "remove it or name another folder for results")
+    return record
+
+
+def _make_workspace(run, record):
+    """Refuses to mix maps of other photographs with those of this run."""
+    config = run.path("stereo", "patch-match.cfg")
+    before = _content(config) if _map_paths(run.folder) else None
+    try:
+        processes.run(workspace_command(run), run.path("workspace.log"))
+    except processes.ProgramFailed as error:
+        _fail(run, record, "workspace", error)
+    if before is not None and _content(config) != before:
+        with open(config, "w", encoding="utf-8") as file:
+            file.write(before)
+        _fail(run, record, "workspace", processes.Failure(
+            f"{run.folder} has maps of other photographs or sources than "
+            f"sources {run.sources}, every {run.every} gives; remove it or name "
+            "another folder for results"))
+
+
+def _step(run, record, step, command, log):
+    """Runs a program and adds what it took to the record."""
+    try:
+        # Should this process be killed, the time of this part is not known.
+        known = _measures(record, step)
+        _set(record, step, None)
+        files.write_json(run.path("record.json"), record)
+        usage = processes.run(command, run.path(log))
+        _set(record, step, _sum(known, usage))
+    except processes.ProgramFailed as error:
+        _set(record, step, _sum(known, error.usage))
+        _fail(run, record, step, error)
+    except processes.Interrupted as stop:
+        _set(record, step, _sum(known, stop.usage))
+        files.write_json(run.path("record.json"), record)
+        raise
+
+
+def _measures(record, step):
+    """What the parts so far took, None if it is not known."""
+    if step not in record["seconds"]:
+        return processes.Usage(0, 0, 0)
+    values = [record[measure][step] for measure in _MEASURES]
+    return None if None in values else processes.Usage(*values)
+
+
+def _sum(known, usage):
+    if known is None:
+        return None
+    return processes.Usage(
+        known.seconds + usage.seconds, known.cpu_seconds + usage.cpu_seconds,
+        max(known.peak_memory_bytes, usage.peak_memory_bytes))
+
+
+def _set(record, step, usage):
+    for measure in _MEASURES:
+        record[measure][step] = usage and getattr(usage, measure)
+
+
+def _fail(run, record, step, error):
+    record["failed"] = {"step": step, "message": str(error)}
+    files.write_json(run.path("record.json"), record)
+    raise error
+
+
+def _finish(run, record, step):
+    record["failed"] = None
+    if step not in record["done"]:
+        record["done"].append(step)
+    files.write_json(run.path("record.json"), record)
+
+
+def _content(path):
+    try:
+        with open(path, encoding="utf-8") as file:
+            return file.read()
+    except FileNotFoundError:
+        return None
+
+
+def _map_paths(folder):
+    return sorted(glob.glob(
+        os.path.join(glob.escape(folder), "stereo", "depth_maps", "**",
+                     "*.geometric.bin"), recursive=True))
+
+
+def _describe_maps(folder):
+    """Number of depth maps, and [width, height] of the first one."""
+    paths = _map_paths(folder)
+    if not paths:
+        return 0, None
+    with open(paths[0], "rb") as file:
+        header = file.read(64).split(b"&")
+    return len(paths), [int(header[0]), int(header[1])]
