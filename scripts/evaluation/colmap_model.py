@@ -3,13 +3,15 @@
 A pixel is a pair (x, y) as in COLMAP: x to the right, y down, the centre of the
 top-left pixel at (0.5, 0.5). A ray is the pair (u, v) of a point (u, v, 1) in the
 camera's frame (x right, y down, z forward), so that a depth z at the ray is the
-point (u z, v z, z). Unreadable files raise ValueError with the path in the message.
+point (u z, v z, z). Unreadable files raise Failure with the path in the message.
 """
 
 import os
 from dataclasses import dataclass
 
 import numpy as np
+
+from .processes import Failure
 
 # Number of parameters by the name of the model.
 _PARAMETERS = {"SIMPLE_PINHOLE": 3, "PINHOLE": 4, "THIN_PRISM_FISHEYE": 12}
@@ -55,7 +57,7 @@ def _lines(path):
         with open(path, encoding="utf-8") as file:
             return [line for line in file.read().split("\n") if not line.startswith("#")]
     except (OSError, UnicodeDecodeError) as error:
-        raise ValueError(f"{path} cannot be read: {error}") from error
+        raise Failure(f"{path} cannot be read: {error}") from error
 
 
 def read_cameras(path):
@@ -70,18 +72,18 @@ def read_cameras(path):
             camera = Camera(model, int(fields[2]), int(fields[3]),
                             tuple(float(value) for value in fields[4:]))
         except (IndexError, ValueError) as error:
-            raise ValueError(f"{path}: no camera in the line '{line}'") from error
+            raise Failure(f"{path}: no camera in the line '{line}'") from error
         if model not in _PARAMETERS:
-            raise ValueError(f"{path}: cannot use the camera model {model}; there are "
+            raise Failure(f"{path}: cannot use the camera model {model}; there are "
                              + ", ".join(_PARAMETERS))
         if len(camera.params) != _PARAMETERS[model]:
-            raise ValueError(f"{path}: {model} has {_PARAMETERS[model]} parameters, "
+            raise Failure(f"{path}: {model} has {_PARAMETERS[model]} parameters, "
                              f"not {len(camera.params)}")
         if camera.width <= 0 or camera.height <= 0:
-            raise ValueError(f"{path}: camera {number} has no pixels")
+            raise Failure(f"{path}: camera {number} has no pixels")
         cameras[number] = camera
     if not cameras:
-        raise ValueError(f"{path} holds no camera")
+        raise Failure(f"{path} holds no camera")
     return cameras
 
 
@@ -101,11 +103,11 @@ def read_views(folder):
             view = View(int(fields[0]), fields[9].strip(), cameras[int(fields[8])],
                         rotation_of(pose[:4]), np.array(pose[4:7]))
         except (IndexError, KeyError, ValueError) as error:
-            raise ValueError(f"{path}: no photograph of a known camera in the line "
+            raise Failure(f"{path}: no photograph of a known camera in the line "
                              f"'{line[:80]}'") from error
         views.append(view)
     if not views:
-        raise ValueError(f"{path} holds no photograph")
+        raise Failure(f"{path} holds no photograph")
     return sorted(views, key=lambda view: view.name)
 
 

@@ -1,6 +1,6 @@
 """Depth maps in files: planar z in the photograph's frame, 0 where there is none.
 
-Arrays are float32 of shape (height, width). Unreadable files raise ValueError with the
+Arrays are float32 of shape (height, width). Unreadable files raise Failure with the
 path in the message; a file appears under its name only when it is complete.
 """
 
@@ -10,6 +10,8 @@ import re
 import cv2
 import numpy as np
 
+from .processes import Failure
+
 PNG_STEPS_PER_METRE = 4000
 
 
@@ -18,7 +20,7 @@ def _bytes(path):
         with open(path, "rb") as file:
             return file.read()
     except OSError as error:
-        raise ValueError(f"{path} cannot be read: {error.strerror}") from error
+        raise Failure(f"{path} cannot be read: {error.strerror}") from error
 
 
 def _known(depth):
@@ -30,7 +32,7 @@ def read_png(path):
     """A 16-bit grey PNG, in metres."""
     encoded = cv2.imdecode(np.frombuffer(_bytes(path), np.uint8), cv2.IMREAD_UNCHANGED)
     if encoded is None or encoded.dtype != np.uint16 or encoded.ndim != 2:
-        raise ValueError(f"{path} is no 16-bit grey PNG")
+        raise Failure(f"{path} is no 16-bit grey PNG")
     return (encoded / np.float32(PNG_STEPS_PER_METRE)).astype(np.float32)
 
 
@@ -39,10 +41,10 @@ def read_bin(path):
     data = _bytes(path)
     header = re.match(rb"(\d+)&(\d+)&1&", data)
     if header is None:
-        raise ValueError(f"{path} is no depth map of COLMAP's")
+        raise Failure(f"{path} is no depth map of COLMAP's")
     width, height = int(header[1]), int(header[2])
     if len(data) != header.end() + 4 * width * height:
-        raise ValueError(f"{path} has not the size that its header says")
+        raise Failure(f"{path} has not the size that its header says")
     return _known(np.frombuffer(data, "<f4", offset=header.end()).reshape(height, width))
 
 
@@ -50,7 +52,7 @@ def read_raw(path, width, height):
     """One of ETH3D's depth maps: nothing but little-endian float32, row by row."""
     data = _bytes(path)
     if len(data) != 4 * width * height:
-        raise ValueError(f"{path} has {len(data)} bytes, but {width}x{height} depths need "
+        raise Failure(f"{path} has {len(data)} bytes, but {width}x{height} depths need "
                          f"{4 * width * height}")
     return _known(np.frombuffer(data, "<f4").reshape(height, width))
 

@@ -20,17 +20,15 @@ would have to be to leave no gaps (evaluate_point_cloud --beam_divergence_halfan
 """
 
 import argparse
-import json
 import os
 import sys
 
 import numpy as np
 
-if __package__:
-    from . import colmap_model, depth_maps
-else:  # Started as a program.
-    import colmap_model
-    import depth_maps
+if not __package__:  # Started as a program.
+    sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+from evaluation import colmap_model, depth_maps, files
+from evaluation.processes import Failure
 
 # From a camera's frame (x right, y down, z forward) to the scanner's.
 SCANNER_FROM_CAMERA = np.array(((0., 0., 1.), (-1., 0., 0.), (0., -1., 0.)))
@@ -97,9 +95,7 @@ def write_project(path, scans):
         lines += [" ".join(f"{value:.12g}" for value in row) + " " for row in matrix]
         lines += ["</MLMatrix44>", "  </MLMesh>"]
     lines += [" </MeshGroup>", " <RasterGroup/>", "</MeshLabProject>"]
-    with open(path + ".new", "w", encoding="ascii") as file:
-        file.write("\n".join(lines) + "\n")
-    os.replace(path + ".new", path)
+    files.write_text(path, "\n".join(lines) + "\n")
 
 
 def choose_scanners(views, names=None, every=1):
@@ -112,7 +108,7 @@ def choose_scanners(views, names=None, every=1):
             known[key] = view
     unknown = [name for name in names if name not in known]
     if unknown:
-        raise ValueError(f"there is no photograph {unknown[0]} in the model; its first is "
+        raise Failure(f"there is no photograph {unknown[0]} in the model; its first is "
                          f"{views[0].name}")
     return [known[name] for name in names]
 
@@ -120,14 +116,14 @@ def choose_scanners(views, names=None, every=1):
 def make_scans(data, out, names=None, every=1, voxel_size=0.0, max_depth=np.inf):
     """Writes the scans of a data set. Returns the path of the MeshLab project.
 
-    Raises ValueError if the data cannot be used; the project is written last.
+    Raises Failure if the data cannot be used; the project is written last.
     """
     views = choose_scanners(colmap_model.read_views(os.path.join(data, "sparse")), names, every)
     measured = [(view, depth_maps.find(os.path.join(data, "gt_depth"), view.name))
                 for view in views]
     missing = [view.name for view, path in measured if not path]
     if len(missing) == len(views) or (names is not None and missing):
-        raise ValueError(f"{data}/gt_depth has no depth of {missing[0]}")
+        raise Failure(f"{data}/gt_depth has no depth of {missing[0]}")
     os.makedirs(out, exist_ok=True)
     scans, angles, counts = [], [], []
     for view, path in measured:
@@ -145,9 +141,9 @@ def make_scans(data, out, names=None, every=1, voxel_size=0.0, max_depth=np.inf)
         angles.append(beam_halfangle(view, depth))
         counts.append({"scan": name, "photograph": view.name, "points": len(points)})
     if not scans:
-        raise ValueError(f"the depth maps in {data}/gt_depth hold no depth to scan")
-    with open(os.path.join(out, "scans.json"), "w", encoding="utf-8") as file:
-        json.dump({"beam_divergence_halfangle_deg": max(angles), "scans": counts}, file, indent=1)
+        raise Failure(f"the depth maps in {data}/gt_depth hold no depth to scan")
+    files.write_json(os.path.join(out, "scans.json"),
+                     {"beam_divergence_halfangle_deg": max(angles), "scans": counts})
     project = os.path.join(out, "scan_alignment.mlp")
     write_project(project, scans)
     return project
@@ -169,7 +165,7 @@ def main():
     try:
         print(make_scans(arguments.data, arguments.out, names, arguments.every,
                          arguments.voxel_size, arguments.max_depth))
-    except (OSError, ValueError) as error:
+    except (OSError, Failure) as error:
         sys.exit(f"ERROR: {error}")
 
 

@@ -1,0 +1,168 @@
+"""From a scene of ETH3D, as its archives unpack, to a set of this project.
+
+A set (see examples/room/README.md) has images/ and sparse/, here links to the scene's
+undistorted photographs and their model, gt_scans/, a link to its laser scans, and
+gt_depth/. ETH3D's depth maps belong to the photographs as they were taken, with the
+lens's distortion. They are sampled at the rays of the undistorted photographs' pixels;
+the depth z of a point does not depend on the distortion.
+"""
+
+import os
+
+import numpy as np
+
+from . import colmap_model, depth_maps, files
+from .processes import Failure
+
+MODEL_FILES = ("cameras.txt", "images.txt", "points3D.txt")
+MAX_POSE_DIFFERENCE = 1e-3  # Metres, and entries of the rotation.
+
+
+def _link(target, link):
+    """A relative link, so that the folder of everything can be moved."""
+    os.makedirs(os.path.dirname(link), exist_ok=True)
+    text = os.path.relpath(os.path.realpath(target), os.path.realpath(os.path.dirname(link)))
+    if os.path.islink(link):
+        if os.readlink(link) == text:
+            return
+        os.remove(link)
+    os.symlink(text, link)
+
+
+def _scaled(camera, size):
+    """The camera of a photograph made smaller so that no side exceeds size."""
+    factor = min(1.0, size / max(camera.width, camera.height)) if size > 0 else 1.0
+    width = max(1, round(camera.width * factor))
+    height = max(1, round(camera.height * factor))
+    x, y = width / camera.width, height / camera.height
+    fx, fy, cx, cy = camera.params
+    return colmap_model.Camera("PINHOLE", width, height, (fx * x, fy * y, cx * x, cy * y))
+
+
+def sampled_pixels(original, undistorted):
+    """Which pixel of the original photograph every undistorted pixel shows.
+
+    Index into the original's pixels row by row, (height, width) of the undistorted
+    camera; -1 where the ray is outside the original photograph.
+    """
+    u, v = colmap_model.unproject(undistorted, *colmap_model.pixel_centres(undistorted))
+    x, y = colmap_model.project(original, u, v)
+    with np.errstate(invalid="ignore"):
+        inside = (x >= 0) & (x < original.width) & (y >= 0) & (y < original.height)
+    column = np.where(inside, x, 0).astype(np.int64)
+    row = np.where(inside, y, 0).astype(np.int64)
+    return np.where(inside, row * original.width + column, -1)
+
+
+def warp(depth, pixels):
+    """Depth at the pixels that sampled_pixels returned; 0 where there is none."""
+    return np.where(pixels >= 0, depth.ravel()[np.maximum(pixels, 0)], 0).astype(np.float32)
+
+
+def original_name(name):
+    """Of the photograph as it was taken, from the undistorted one's name."""
+    folder, base = os.path.split(name)
+    return os.path.join(folder.removesuffix("_undistorted"), base)
+
+
+def _find_originals(scene_path, scene, views):
+    """The views as they were taken, by the names of the undistorted ones."""
+    folder = os.path.join(scene_path, scene.track.original_calibration)
+    originals = {view.name: view for view in colmap_model.read_views(folder)}
+    found = {}
+    for view in views:
+        original = originals.get(original_name(view.name))
+        if original is None:
+            continue
+        difference = max(np.abs(original.rotation - view.rotation).max(),
+                         np.abs(original.translation - view.translation).max())
+        if difference > MAX_POSE_DIFFERENCE:
+            raise Failure(f"{folder}: the pose of {original.name} is another than that of "
+                             f"{view.name}; unpack both archives of the scene again")
+        found[view.name] = original
+    return found
+
+
+def depth_folder(scene_path, scene):
+    """Where the scene's depth maps are, "" if they or the lens are missing."""
+    folder = os.path.join(scene_path, "ground_truth_depth")
+    calibration = os.path.join(scene_path, scene.track.original_calibration)
+    return folder if os.path.isdir(folder) and os.path.isdir(calibration) else ""
+
+
+def _prepare_depth(scene_path, scene, views, out, size):
+    """Writes gt_depth; returns the number of maps."""
+    folder = depth_folder(scene_path, scene)
+    originals = _find_originals(scene_path, scene, views) if folder else {}
+    pixels = {}
+    count = 0
+    for view in views:
+        original = originals.get(view.name)
+        source = os.path.join(folder, original.name) if original else ""
+        if not os.path.isfile(source):
+            continue
+        target = os.path.join(out, "gt_depth", os.path.splitext(view.name)[0] + ".bin")
+        if not os.path.isfile(target):
+            cameras = (original.camera, view.camera)
+            if cameras not in pixels:
+                pixels[cameras] = sampled_pixels(original.camera, _scaled(view.camera, size))
+            depth = depth_maps.read_raw(source, original.camera.width, original.camera.height)
+            depth_maps.write_bin(target, warp(depth, pixels[cameras]))
+        count += 1
+    return count
+
+
+def _check_photographs(scene_path, views):
+    for view in views:
+        if view.camera.model != "PINHOLE":
+            raise Failure(f"{view.name} has the camera model {view.camera.model}, but an "
+                             "undistorted photograph has PINHOLE")
+        path = os.path.join(scene_path, "images", view.name)
+        if not os.path.isfile(path):
+            raise Failure(f"{path} is missing; unpack the scene's undistorted photographs")
+
+
+def prepare(scene, scene_path, out, depth_size=2000):
+    """Makes or completes a set; returns what set.json says of it.
+
+    depth_size: the longest side of gt_depth's maps in pixels, 0: as the photographs.
+    Raises Failure if the scene is not whole. What exists is not made again, unless
+    it was made with another depth_size.
+    """
+    calibration = os.path.join(scene_path, f"{scene.track.tag}_calibration_undistorted")
+    for name in MODEL_FILES:
+        if not os.path.isfile(os.path.join(calibration, name)):
+            raise Failure(f"{calibration} has no {name}; unpack "
+                             f"{scene.archives()[0]} into {os.path.dirname(scene_path)}")
+    views = colmap_model.read_views(calibration)
+    _check_photographs(scene_path, views)
+    scans = os.path.join(scene_path, f"{scene.track.tag}_scan_eval")
+    if os.path.isdir(scans) and not os.path.isfile(os.path.join(scans, "scan_alignment.mlp")):
+        raise Failure(f"{scans} has no scan_alignment.mlp; unpack the scans again")
+    _check_depth_size(out, depth_size)
+
+    for view in views:
+        _link(os.path.join(scene_path, "images", view.name), os.path.join(out, "images", view.name))
+    for name in MODEL_FILES:
+        _link(os.path.join(calibration, name), os.path.join(out, "sparse", name))
+    if os.path.isdir(scans):
+        _link(scans, os.path.join(out, "gt_scans"))
+    content = {"scene": scene.name, "resolution": scene.resolution, "split": scene.split,
+               "photographs": len(views), "scans": os.path.isdir(scans),
+               "depth_maps": _prepare_depth(scene_path, scene, views, out, depth_size),
+               "depth_size": depth_size}
+    files.write_json(os.path.join(out, "set.json"), content)
+    return content
+
+
+def _check_depth_size(out, depth_size):
+    """Maps of two sizes are not mixed; depth_size stands beside the first of them."""
+    path = os.path.join(out, "gt_depth", "size.txt")
+    if os.path.isfile(path):
+        with open(path, encoding="ascii") as file:
+            before = file.read().strip()
+        if before != str(depth_size):
+            raise Failure(f"{out}/gt_depth was made with --depth_size {before}; remove it "
+                             f"to make it with {depth_size}")
+        return
+    files.write_text(path, f"{depth_size}\n")

@@ -1,0 +1,254 @@
+#!/usr/bin/env python3
+"""Makes a small scene in the layout of ETH3D's archives from the built-in example.
+
+    scripts/miniature_eth3d.py OUT [--scene NAME] [--split training|test]
+                               [--image_size PIXELS] [--views N] [--voxel_size METRES]
+
+OUT/NAME has what the archives of a real scene unpack to, for both tracks (dslr: high
+resolution, rig: low): photographs as taken by a lens with ETH3D's THIN_PRISM_FISHEYE
+model, undistorted ones, their calibrations, depth of the former as bare floats (with
+gaps, as a laser scan leaves them), and laser scans of three places with their poses.
+A scene of the test split has photographs and undistorted calibration alone.
+
+The rig's four cameras are views of the example in turn; they are no rigid rig, but
+differ in their intrinsics. This is for tests and for trying scripts/eth3d out. Its
+figures say nothing about the benchmark.
+"""
+
+import argparse
+import os
+import sys
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+
+from evaluation import colmap_model, depth_maps, depth_scans
+
+ROOM = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../examples/room")
+# A lens like that of ETH3D's camera: k1, k2, p1, p2, k3, k4, sx1, sy1.
+LENS = (0.21, 0.2, -1e-5, 5e-4, -0.16, 0.4, -1e-4, 9e-4)
+# The photograph as taken shows a little less than the undistorted one.
+ZOOM = 1.04
+MEASURED_SHARE = 0.7  # Of the pixels of a depth map.
+SCANNERS = ("room_01", "room_06", "room_11")
+
+
+@dataclass(frozen=True)
+class Photograph:
+    """One photograph to be made: of which view, by which cameras, under which names."""
+    view: colmap_model.View
+    camera: int
+    undistorted_name: str
+    original_name: str
+
+
+@dataclass(frozen=True)
+class Part:
+    """One track of the scene."""
+    tag: str
+    original_calibration: str
+    undistorted: list  # Cameras.
+    originals: list  # Cameras, as many.
+    photographs: list
+    is_grey: bool
+
+
+def read_observations():
+    """Of the example: pixels (x, y, point) by view number, and lines of points3D.txt."""
+    def lines(name):
+        with open(os.path.join(ROOM, "sparse", name), encoding="utf-8") as file:
+            return [line for line in file.read().split("\n") if not line.startswith("#")]
+
+    images = lines("images.txt")
+    observations = {}
+    for head, tail in zip(images[0::2], images[1::2]):
+        if head:
+            observations[int(head.split()[0])] = np.array(tail.split(), float).reshape(-1, 3)
+    points = {int(line.split()[0]): line.split()[:8] for line in lines("points3D.txt") if line}
+    return observations, points
+
+
+def pinhole(source, size, shift=0.0):
+    """The example's camera for photographs of another size, with columns cut off."""
+    scale = size / source.width
+    width, height = round(size * (1 - abs(shift))), round(source.height * scale)
+    focal = source.params[0] * scale
+    return colmap_model.Camera("PINHOLE", width, height,
+                               (focal, focal, width / 2 + shift * size / 2, height / 2))
+
+
+def with_lens(camera):
+    fx, fy, cx, cy = camera.params
+    return colmap_model.Camera(
+        "THIN_PRISM_FISHEYE", camera.width, camera.height,
+        (ZOOM * fx, ZOOM * fy * 0.999, cx + 0.8, cy - 0.6) + LENS)
+
+
+def spread(views, count):
+    """count of the views, one after the other, from the middle of the walk."""
+    first = (len(views) - count) // 2
+    return views[first:first + count]
+
+
+def dslr_part(views, size, count):
+    source = views[0].camera
+    photographs = []
+    for index, view in enumerate(spread(views, count)):
+        name = f"DSC_{101 + 3 * index:04d}.JPG"
+        photographs.append(Photograph(view, 0, f"dslr_images_undistorted/{name}",
+                                      f"dslr_images/{name}"))
+    undistorted = [pinhole(source, size)]
+    return Part("dslr", "dslr_calibration_jpg", undistorted,
+                [with_lens(camera) for camera in undistorted], photographs, False)
+
+
+def rig_part(views, size, count):
+    source = views[0].camera
+    undistorted = [pinhole(source, size, shift) for shift in (-0.05, -0.02, 0.02, 0.05)]
+    photographs = []
+    for index, view in enumerate(spread(views, count)):
+        camera, name = index % 4, f"{1477833684658155598 + 50000000 * (index // 4)}.png"
+        photographs.append(Photograph(
+            view, camera, f"images_rig_cam{4 + camera}_undistorted/{name}",
+            f"images_rig_cam{4 + camera}/{name}"))
+    return Part("rig", "rig_calibration", undistorted,
+                [with_lens(camera) for camera in undistorted], photographs, True)
+
+
+def source_pixels(camera, source):
+    """Where in the example's photograph every pixel of a camera looks: x, y."""
+    return colmap_model.project(
+        source, *colmap_model.unproject(camera, *colmap_model.pixel_centres(camera)))
+
+
+def make_photograph(image, camera, source):
+    """The example's photograph through another camera; black outside."""
+    scale = max(camera.params[0] / source.params[0], 1e-3)
+    small = cv2.resize(image, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA)
+    x, y = source_pixels(camera, source)
+    x = x * small.shape[1] / source.width - 0.5
+    y = y * small.shape[0] / source.height - 0.5
+    return cv2.remap(small, x.astype(np.float32), y.astype(np.float32), cv2.INTER_LINEAR,
+                     borderMode=cv2.BORDER_CONSTANT)
+
+
+def blank(image, undistorted, original):
+    """Black where the original photograph shows nothing, as ETH3D has it."""
+    u, v = colmap_model.unproject(undistorted, *colmap_model.pixel_centres(undistorted))
+    x, y = colmap_model.project(original, u, v)
+    seen = (x >= 0) & (x <= original.width) & (y >= 0) & (y <= original.height)
+    image[~seen] = 0
+    return image
+
+
+def make_depth(depth, camera, source, rng):
+    """The example's depth through another camera; infinite without measurement."""
+    x, y = source_pixels(camera, source)
+    inside = (x >= 0) & (x < source.width) & (y >= 0) & (y < source.height)
+    inside &= rng.random(x.shape) < MEASURED_SHARE
+    column, row = np.where(inside, x, 0).astype(int), np.where(inside, y, 0).astype(int)
+    return np.where(inside, depth[row, column], np.inf).astype("<f4")
+
+
+def write_model(folder, cameras, photographs, names, observations, points, source):
+    """A text model with the example's points, seen in these photographs."""
+    os.makedirs(folder, exist_ok=True)
+    tracks, images = {}, []
+    for photograph, name in zip(photographs, names):
+        view, camera = photograph.view, cameras[photograph.camera]
+        seen = observations[view.number]
+        u, v = colmap_model.unproject(source, seen[:, 0], seen[:, 1])
+        x, y = colmap_model.project(camera, u, v)
+        keep = (x >= 0) & (x < camera.width) & (y >= 0) & (y < camera.height)
+        pixels = []
+        for px, py, point in zip(x[keep], y[keep], seen[keep, 2].astype(int)):
+            tracks.setdefault(point, []).append(f"{view.number} {len(pixels)}")
+            pixels.append((px, py, point))
+        images.append((view, photograph.camera, name, pixels))
+    tracks = {point: track for point, track in tracks.items() if len(track) >= 2}
+    with open(os.path.join(folder, "cameras.txt"), "w", encoding="utf-8") as file:
+        file.write("# Camera list with one line of data per camera:\n")
+        for number, camera in enumerate(cameras):
+            file.write(f"{number} {camera.model} {camera.width} {camera.height} "
+                       + " ".join(f"{value:.9g}" for value in camera.params) + "\n")
+    with open(os.path.join(folder, "images.txt"), "w", encoding="utf-8") as file:
+        file.write(f"# Number of images: {len(photographs)}\n")
+        for view, camera, name, pixels in images:
+            pose = " ".join(f"{value:.12g}" for value in (*quaternions()[view.number],
+                                                          *view.translation))
+            file.write(f"{view.number} {pose} {camera} {name}\n")
+            file.write(" ".join(f"{x:.3f} {y:.3f} {point if point in tracks else -1}"
+                                for x, y, point in pixels) + "\n")
+    with open(os.path.join(folder, "points3D.txt"), "w", encoding="utf-8") as file:
+        for point in sorted(tracks):
+            file.write(" ".join(points[point]) + " " + " ".join(tracks[point]) + "\n")
+
+
+def quaternions():
+    """Rotations of the example as they stand in its images.txt, by view number."""
+    with open(os.path.join(ROOM, "sparse", "images.txt"), encoding="utf-8") as file:
+        lines = [line for line in file.read().split("\n") if not line.startswith("#")]
+    return {int(line.split()[0]): [float(value) for value in line.split()[1:5]]
+            for line in lines[0::2] if line}
+
+
+def write_part(out, part, source, is_training, voxel_size):
+    observations, points = read_observations()
+    rng = np.random.default_rng(4)
+    for photograph in part.photographs:
+        stem = os.path.splitext(photograph.view.name)[0]
+        image = cv2.imread(os.path.join(ROOM, "images", photograph.view.name),
+                           cv2.IMREAD_GRAYSCALE if part.is_grey else cv2.IMREAD_COLOR)
+        depth = depth_maps.read_png(os.path.join(ROOM, "gt_depth", stem + ".png"))
+        undistorted = part.undistorted[photograph.camera]
+        original = part.originals[photograph.camera]
+        made = {photograph.undistorted_name:
+                blank(make_photograph(image, undistorted, source), undistorted, original)}
+        if is_training:
+            made[photograph.original_name] = make_photograph(image, original, source)
+            path = os.path.join(out, "ground_truth_depth", photograph.original_name)
+            os.makedirs(os.path.dirname(path), exist_ok=True)
+            make_depth(depth, original, source, rng).tofile(path)
+        for name, picture in made.items():
+            path = os.path.join(out, "images", name)
+            os.makedirs(os.path.dirname(path), exist_ok=True)
+            is_jpeg = name.endswith(".JPG")
+            cv2.imwrite(path, picture, [cv2.IMWRITE_JPEG_QUALITY, 95] if is_jpeg else [])
+    models = [(f"{part.tag}_calibration_undistorted", part.undistorted, "undistorted_name")]
+    if is_training:
+        models.append((part.original_calibration, part.originals, "original_name"))
+    for folder, cameras, key in models:
+        names = [getattr(photograph, key) for photograph in part.photographs]
+        write_model(os.path.join(out, folder), cameras, part.photographs, names, observations,
+                    points, source)
+    if is_training:
+        depth_scans.make_scans(ROOM, os.path.join(out, f"{part.tag}_scan_eval"), SCANNERS,
+                               voxel_size=voxel_size)
+        os.remove(os.path.join(out, f"{part.tag}_scan_eval", "scans.json"))
+
+
+def main():
+    parser = argparse.ArgumentParser(usage=__doc__)
+    parser.add_argument("out")
+    parser.add_argument("--scene", default="miniature")
+    parser.add_argument("--split", choices=("training", "test"), default="training")
+    parser.add_argument("--image_size", type=int, default=360)
+    parser.add_argument("--views", type=int, default=8)
+    parser.add_argument("--voxel_size", type=float, default=0.01)
+    arguments = parser.parse_args()
+    views = colmap_model.read_views(os.path.join(ROOM, "sparse"))
+    if not 2 <= arguments.views <= len(views) or arguments.image_size < 32:
+        sys.exit(f"ERROR: --views must be 2 to {len(views)} and --image_size at least 32")
+    out = os.path.join(arguments.out, arguments.scene)
+    if os.path.exists(out):
+        sys.exit(f"ERROR: {out} exists already; name another folder or scene")
+    for part in (dslr_part(views, arguments.image_size, arguments.views),
+                 rig_part(views, arguments.image_size * 3 // 4, arguments.views)):
+        write_part(out, part, views[0].camera, arguments.split == "training",
+                   arguments.voxel_size)
+    print(out)
+
+
+if __name__ == "__main__":
+    main()
