@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Makes a small scene in the layout of ETH3D's archives from the built-in example.
 
     scripts/miniature_eth3d.py OUT [--scene NAME] [--split training|test]

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Makes laser scans from depth maps: what a scanner at a camera's place would measure.
 
     scripts/evaluation/depth_scans.py DATA OUT [--scanners NAMES | --every N]
