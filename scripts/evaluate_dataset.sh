@@ -11,7 +11,7 @@
 #   SOURCES=10  EVERY=1          as in make_workspace.sh
 #   TOLERANCES=0.05,0.1          in metres
 #   RELATIVE_TOLERANCES=0.5,1,2  in per cent of depth
-#   MAX_TEXTURENESS=0.75         also score the pixels of lower textureness
+#   MAX_TEXTURENESS=0.6,0.75     also score the pixels of lower textureness
 set -euo pipefail
 
 here=$(cd "$(dirname "$0")" && pwd)
@@ -32,18 +32,11 @@ shift 2
 "$here/make_workspace.sh" "$data" "$out" "${SOURCES:-10}" "${EVERY:-1}"
 "$bin/colmap" patch_match_stereo --workspace_path "$out" "$@"
 
-score() {
-  "$bin/evaluate_depth_maps" --workspace_path "$out" \
-    --ground_truth_path "$data/gt_depth" \
-    --tolerances "${TOLERANCES:-0.01,0.02,0.05,0.1,0.2}" \
-    --relative_tolerances "${RELATIVE_TOLERANCES:-0.5,1,2}" "$@"
-}
-pictures=()
-[[ ${PICTURES:-0} == 0 ]] || pictures=(--pictures "$out/pictures")
-score --json "$out/scores.json" "${pictures[@]}" | tee "$out/scores.txt"
-if [[ -n ${MAX_TEXTURENESS:-} ]]; then
-  echo
-  echo "Pixels of textureness below $MAX_TEXTURENESS:"
-  score --json "$out/scores_low_texture.json" \
-    --max_textureness "$MAX_TEXTURENESS" | tee "$out/scores_low_texture.txt"
-fi
+more=()
+[[ ${PICTURES:-0} == 0 ]] || more+=(--pictures "$out/pictures")
+[[ -z ${MAX_TEXTURENESS:-} ]] || more+=(--max_textureness "$MAX_TEXTURENESS")
+"$bin/evaluate_depth_maps" --workspace_path "$out" \
+  --ground_truth_path "$data/gt_depth" \
+  --tolerances "${TOLERANCES:-0.01,0.02,0.05,0.1,0.2}" \
+  --relative_tolerances "${RELATIVE_TOLERANCES:-0.5,1,2}" \
+  --json "$out/scores.json" "${more[@]}" | tee "$out/scores.txt"

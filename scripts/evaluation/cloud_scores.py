@@ -26,12 +26,15 @@ def default_evaluator(bin_dir=None):
                                 "evaluate_point_cloud")
 
 
-def command(evaluator, cloud, scans, tolerances=None):
-    """cloud: a PLY; scans: a MeshLab project of scans with their poses."""
+def command(evaluator, cloud, scans, tolerances=None, options=()):
+    """cloud: a PLY; scans: a MeshLab project of scans with their poses.
+
+    options: more options of the evaluator.
+    """
     return [evaluator, "--tolerances",
             ",".join(f"{value:g}" for value in tolerances or TOLERANCES),
             "--reconstruction_ply_path", cloud,
-            "--ground_truth_mlp_path", scans]
+            "--ground_truth_mlp_path", scans, *options]
 
 
 def parse(text):
@@ -53,7 +56,7 @@ def parse(text):
 
 
 def score(folder, clouds, scans, evaluator=None, tolerances=None,
-          paths=None):
+          options=(), paths=None):
     """Scores clouds, by name, unless FOLDER/cloud_scores.json has them.
 
     paths: where a cloud is not FOLDER/NAME.ply, its path by name. Returns all
@@ -70,7 +73,7 @@ def score(folder, clouds, scans, evaluator=None, tolerances=None,
             os.remove(log)
         processes.say(f"{folder}: score of {name}.ply ...")
         processes.run(command(evaluator or default_evaluator(), cloud, scans,
-                              tolerances), log)
+                              tolerances, options), log)
         with open(log, encoding="utf-8", errors="replace") as file:
             scores[name] = parse(file.read())
         files.write_json(path, scores)

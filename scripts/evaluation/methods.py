@@ -39,9 +39,11 @@ LABELS = {
     "paper-refinement": "paper's TAPA without refinement",
 }
 
-# The paper's Table 2, column by column: our method for each.
+# The columns of the paper's Table 2: with the paper's own method, and with what
+# this program does.
 ABLATION = ["plain", "paper-weights", "paper-coarse", "paper-fine",
-            "paper-refinement", "paper"]
+                  "paper-refinement", "paper"]
+TAPA_ABLATION = [name.replace("paper", "tapa") for name in ABLATION]
 
 
 def fusion_options(reprojection_error, normal_error=20):

@@ -126,7 +126,7 @@ def complete(run):
         _make_workspace(run, record)
         processes.say(f"{run.folder}: stereo ...")
         _step(run, record, "stereo", stereo_command(run), "stereo.log")
-        record["views"], record["image_size"] = _describe_maps(run.folder)
+        record["views"], record["image_size"] = describe_maps(run.folder)
         _finish(run, record, "stereo")
     for name in run.fusions:
         _fuse(run, record, name)
@@ -244,6 +244,14 @@ def _fail(run, record, step, error):
     raise error
 
 
+def note_failure(folder, step, error):
+    """Records that a later step failed, or with None that none did."""
+    record = load_record(folder)
+    if record is not None:
+        record["failed"] = error and {"step": step, "message": str(error)}
+        files.write_json(os.path.join(folder, "record.json"), record)
+
+
 def _finish(run, record, step):
     record["failed"] = None
     if step not in record["done"]:
@@ -265,7 +273,7 @@ def _map_paths(folder):
                      "*.geometric.bin"), recursive=True))
 
 
-def _describe_maps(folder):
+def describe_maps(folder):
     """Number of depth maps, and [width, height] of the first one."""
     paths = _map_paths(folder)
     if not paths:

@@ -19,15 +19,14 @@ double Share(int64_t part, int64_t whole) {
   return whole > 0 ? static_cast<double>(part) / whole : kNaN;
 }
 
-// Median of values[begin, end), which are reordered.
-double Median(std::vector<float>::iterator begin,
-              std::vector<float>::iterator end) {
-  if (begin == end) return kNaN;
-  const auto middle = begin + (end - begin) / 2;
-  std::nth_element(begin, middle, end);
-  if ((end - begin) % 2 == 1) return *middle;
-  return 0.5 *
-         (static_cast<double>(*middle) + *std::max_element(begin, middle));
+// Reorders the values.
+double Median(std::vector<float>* values) {
+  if (values->empty()) return kNaN;
+  const auto middle = values->begin() + values->size() / 2;
+  std::nth_element(values->begin(), middle, values->end());
+  if (values->size() % 2 == 1) return *middle;
+  return 0.5 * (static_cast<double>(*middle) +
+                *std::max_element(values->begin(), middle));
 }
 
 void AddCounts(const DepthMapScore& score, DepthMapScore* sum) {
@@ -128,7 +127,8 @@ DepthMapScore DepthMapScorer::Add(const Map<float>& depth,
   const auto masked = [mask](int row, int col) {
     return mask != nullptr && mask->At(row, col) == 0;
   };
-  const auto num_errors = absolute_errors_.size();
+  std::vector<float> absolute_errors;
+  std::vector<float> relative_errors;
   DepthMapScore score;
   score.num_maps = 1;
   score.num_met.resize(tolerances_.size());
@@ -177,25 +177,24 @@ DepthMapScore DepthMapScorer::Add(const Map<float>& depth,
       }
       const double error =
           std::abs(static_cast<double>(estimate) - measurement);
-      absolute_errors_.push_back(static_cast<float>(error));
-      relative_errors_.push_back(static_cast<float>(error / measurement));
+      absolute_errors.push_back(static_cast<float>(error));
+      relative_errors.push_back(static_cast<float>(error / measurement));
     }
   }
 
-  score.median_absolute_error =
-      Median(absolute_errors_.begin() + num_errors, absolute_errors_.end());
-  score.median_relative_error =
-      Median(relative_errors_.begin() + num_errors, relative_errors_.end());
+  score.median_absolute_error = Median(&absolute_errors);
+  score.median_relative_error = Median(&relative_errors);
+  for (const float error : absolute_errors) absolute_errors_.Add(error);
+  for (const float error : relative_errors) relative_errors_.Add(error);
   AddCounts(score, &overall_);
   return score;
 }
 
-DepthMapScore DepthMapScorer::Overall() {
-  overall_.median_absolute_error =
-      Median(absolute_errors_.begin(), absolute_errors_.end());
-  overall_.median_relative_error =
-      Median(relative_errors_.begin(), relative_errors_.end());
-  return overall_;
+DepthMapScore DepthMapScorer::Overall() const {
+  DepthMapScore score = overall_;
+  score.median_absolute_error = absolute_errors_.Median();
+  score.median_relative_error = relative_errors_.Median();
+  return score;
 }
 
 std::vector<int> CorrespondingPixels(int size, int other_size) {

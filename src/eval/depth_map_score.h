@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "src/eval/error_histogram.h"
 #include "src/eval/tolerance.h"
 #include "src/mvs/map.h"
 
@@ -38,7 +39,8 @@ struct DepthMapScore {
   // ... and estimates that meet their measurement.
   std::vector<int64_t> num_right;
   // Median error of the estimates with a measurement: |d - g| in metres and
-  // |d - g| / g. Of an even number, the mean of the middle two.
+  // |d - g| / g. Of an even number, the mean of the middle two. Exact for one
+  // map, to within 0.05 % for several.
   double median_absolute_error = std::numeric_limits<double>::quiet_NaN();
   double median_relative_error = std::numeric_limits<double>::quiet_NaN();
 
@@ -55,8 +57,8 @@ struct DepthMapScore {
 };
 
 // Scores depth maps one after the other (scene units are metres) and all of
-// them together, where every pixel counts the same. Keeps 8 bytes per estimate
-// that has a measurement, for an exact median.
+// them together, where every pixel counts the same. Takes 4 MB, however many
+// maps there are.
 class DepthMapScorer {
  public:
   explicit DepthMapScorer(std::vector<Tolerance> tolerances);
@@ -70,13 +72,13 @@ class DepthMapScorer {
                     const Map<uint8_t>* mask = nullptr);
 
   // Score of all maps that were added.
-  DepthMapScore Overall();
+  DepthMapScore Overall() const;
 
  private:
   std::vector<Tolerance> tolerances_;
   DepthMapScore overall_;
-  std::vector<float> absolute_errors_;
-  std::vector<float> relative_errors_;
+  ErrorHistogram absolute_errors_;
+  ErrorHistogram relative_errors_;
 };
 
 // Where the pixel centres of a row of `size` pixels lie in a row of

@@ -38,7 +38,7 @@ struct Arguments {
   std::string tolerances = "0.01,0.02,0.05,0.1,0.2";
   std::string relative_tolerances = "0.5,1,2";
   double depth_scale = 4000;
-  std::optional<double> max_textureness;
+  std::vector<double> max_textureness;
   std::string json_path;
   std::string pictures_path;
 };
@@ -73,9 +73,10 @@ po::options_description Describe(Arguments* arguments) {
       po::value(&arguments->depth_scale)->default_value(arguments->depth_scale),
       "Value of one metre in a ground-truth PNG.");
   options.add_options()(
-      "max_textureness", po::value<double>(),
-      "Score only pixels of lower textureness, which is 0.5 where a photograph "
-      "is flat and tends to 1 where it has much texture.");
+      "max_textureness", po::value<std::string>(),
+      "Also score the pixels whose textureness is below each of these bounds, "
+      "which are separated by commas. Textureness is 0.5 where a photograph is "
+      "flat and tends to 1 where it has much texture.");
   options.add_options()("json", po::value(&arguments->json_path),
                         "File for all scores, of each view and overall.");
   options.add_options()("pictures", po::value(&arguments->pictures_path),
@@ -96,18 +97,18 @@ void CheckArguments(const Arguments& arguments) {
     throw std::invalid_argument("--depth_scale must be positive");
   }
   const double least = TexturenessOptions().min_textureness;
-  if (arguments.max_textureness.has_value() &&
-      !(*arguments.max_textureness > least &&
-        *arguments.max_textureness <= 1)) {
-    throw std::invalid_argument(
-        "--max_textureness must be above 0.5 and at most 1");
+  for (const double bound : arguments.max_textureness) {
+    if (!(bound > least && bound <= 1)) {
+      throw std::invalid_argument(
+          "--max_textureness must be above 0.5 and at most 1");
+    }
   }
   if (arguments.ground_truth_path.empty()) {
     if (arguments.pictures_path.empty()) {
       throw std::invalid_argument(
           "--ground_truth_path is required, unless --pictures is given");
     }
-    if (!arguments.json_path.empty() || arguments.max_textureness.has_value()) {
+    if (!arguments.json_path.empty() || !arguments.max_textureness.empty()) {
       throw std::invalid_argument(
           "--json and --max_textureness need --ground_truth_path");
     }
@@ -145,7 +146,11 @@ std::optional<Arguments> ParseArguments(int argc, char** argv) {
   }
   po::notify(variables);
   if (variables.count("max_textureness") > 0) {
-    arguments.max_textureness = variables["max_textureness"].as<double>();
+    for (const Tolerance& bound :
+         ParseTolerances(variables["max_textureness"].as<std::string>(),
+                         Tolerance::Unit::kMetres)) {
+      arguments.max_textureness.push_back(bound.value);
+    }
   }
   CheckArguments(arguments);
   return arguments;
@@ -161,33 +166,58 @@ std::vector<Tolerance> AllTolerances(const Arguments& arguments) {
   return tolerances;
 }
 
-// 1 at the pixels of low textureness. The size is that of the ground truth, so
-// that maps of all sizes are judged at the same places.
-Map<uint8_t> LowTexture(const std::string& image_path, int width, int height,
-                        double max_textureness) {
-  const Map<float> textureness =
-      ComputeTextureness(ReadGrey(image_path, width, height));
-  Map<uint8_t> mask(width, height);
+// 1 at the pixels of lower textureness.
+Map<uint8_t> LowTexture(const Map<float>& textureness, double bound) {
+  Map<uint8_t> mask(textureness.width(), textureness.height());
   for (size_t i = 0; i < mask.size(); ++i) {
-    mask.data()[i] = textureness.data()[i] < max_textureness;
+    mask.data()[i] = textureness.data()[i] < bound;
   }
   return mask;
 }
 
-DepthMapScore ScoreView(const WorkspaceView& view, const Map<float>& depth,
-                        const Map<float>& truth, const Arguments& arguments,
-                        DepthMapScorer* scorer) {
-  std::optional<Map<uint8_t>> mask;
-  if (arguments.max_textureness.has_value()) {
-    mask = LowTexture(view.image_path, truth.width(), truth.height(),
-                      *arguments.max_textureness);
+// Scores all views once, whatever their number of bounds of textureness.
+class WorkspaceScorer {
+ public:
+  WorkspaceScorer(const std::vector<Tolerance>& tolerances,
+                  const std::vector<double>& bounds)
+      : bounds_(bounds),
+        scorer_(tolerances),
+        bounded_(bounds.size(), DepthMapScorer(tolerances)) {}
+
+  // Returns the score of the view alone, all of its pixels.
+  DepthMapScore Add(const WorkspaceView& view, const Map<float>& depth,
+                    const Map<float>& truth) {
+    DepthMapScore score;
+    try {
+      score = scorer_.Add(depth, truth);
+    } catch (const std::invalid_argument& error) {
+      throw std::runtime_error(view.name + ": " + error.what());
+    }
+    if (bounds_.empty()) return score;
+    // At the size of the ground truth, so that maps of all sizes are judged at
+    // the same places.
+    const Map<float> textureness = ComputeTextureness(
+        ReadGrey(view.image_path, truth.width(), truth.height()));
+    for (size_t i = 0; i < bounds_.size(); ++i) {
+      const Map<uint8_t> mask = LowTexture(textureness, bounds_[i]);
+      bounded_[i].Add(depth, truth, &mask);
+    }
+    return score;
   }
-  try {
-    return scorer->Add(depth, truth, mask.has_value() ? &*mask : nullptr);
-  } catch (const std::invalid_argument& error) {
-    throw std::runtime_error(view.name + ": " + error.what());
+
+  // Adds the scores of all views together to a report.
+  void Finish(ScoreReport* report) const {
+    report->overall = scorer_.Overall();
+    for (size_t i = 0; i < bounds_.size(); ++i) {
+      report->by_textureness.push_back({bounds_[i], bounded_[i].Overall()});
+    }
   }
-}
+
+ private:
+  std::vector<double> bounds_;
+  DepthMapScorer scorer_;
+  std::vector<DepthMapScorer> bounded_;
+};
 
 void WriteView(const WorkspaceView& view, const Map<float>& depth,
                const Map<float>* truth, const std::vector<std::string>& notes,
@@ -213,10 +243,6 @@ void WriteJson(const ScoreReport& report, const Arguments& arguments) {
   json["workspace_path"] = arguments.workspace_path;
   json["ground_truth_path"] = arguments.ground_truth_path;
   json["input_type"] = arguments.input_type;
-  json["max_textureness"] = nullptr;
-  if (arguments.max_textureness.has_value()) {
-    json["max_textureness"] = *arguments.max_textureness;
-  }
   std::ofstream stream(arguments.json_path);
   stream << json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace)
          << "\n";
@@ -255,7 +281,7 @@ void Run(const Arguments& arguments) {
       scoring ? CountGroundTruth(arguments.ground_truth_path) : 0;
   ScoreReport report;
   report.tolerances = AllTolerances(arguments);
-  DepthMapScorer scorer(report.tolerances);
+  WorkspaceScorer scorer(report.tolerances, arguments.max_textureness);
 
   for (const WorkspaceView& view : views) {
     const std::string truth_path =
@@ -266,8 +292,7 @@ void Run(const Arguments& arguments) {
     std::vector<std::string> notes;
     if (!truth_path.empty()) {
       truth = ReadGroundTruth(truth_path, arguments.depth_scale);
-      const DepthMapScore score =
-          ScoreView(view, depth, truth, arguments, &scorer);
+      const DepthMapScore score = scorer.Add(view, depth, truth);
       notes = {
           "coverage " + PercentText(score.Coverage(), 1) + " %",
           "median error " + PercentText(score.median_relative_error, 2) + " %"};
@@ -286,7 +311,7 @@ void Run(const Arguments& arguments) {
                              arguments.ground_truth_path +
                              " has the name of a depth map");
   }
-  report.overall = scorer.Overall();
+  scorer.Finish(&report);
   PrintScores(report, std::cout);
   PrintRemarks(report, static_cast<int>(views.size()), num_ground_truth);
   if (!arguments.json_path.empty()) WriteJson(report, arguments);

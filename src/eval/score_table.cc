@@ -79,6 +79,29 @@ nlohmann::json ToJson(const DepthMapScore& score,
   return json;
 }
 
+nlohmann::json OverallToJson(const DepthMapScore& score,
+                             const std::vector<Tolerance>& tolerances) {
+  nlohmann::json json = ToJson(score, tolerances);
+  json["num_maps"] = score.num_maps;
+  return json;
+}
+
+// The score at every tolerance.
+void PrintTotals(const DepthMapScore& score,
+                 const std::vector<Tolerance>& tolerances,
+                 std::ostream& stream) {
+  std::vector<Row> rows = {
+      {"Tolerance", "Completeness %", "Accuracy %", "F1 %"}};
+  for (size_t i = 0; i < tolerances.size(); ++i) {
+    const int index = static_cast<int>(i);
+    rows.push_back({ToString(tolerances[i]),
+                    PercentText(score.Completeness(index), 2),
+                    PercentText(score.Accuracy(index), 2),
+                    PercentText(score.F1(index), 2)});
+  }
+  PrintTable(rows, stream);
+}
+
 }  // namespace
 
 void PrintScores(const ScoreReport& report, std::ostream& stream) {
@@ -93,29 +116,32 @@ void PrintScores(const ScoreReport& report, std::ostream& stream) {
   }
   views.push_back(ViewRow("all", report.overall));
   PrintTable(views, stream);
-
-  std::vector<Row> totals = {
-      {"Tolerance", "Completeness %", "Accuracy %", "F1 %"}};
-  for (size_t i = 0; i < report.tolerances.size(); ++i) {
-    const int index = static_cast<int>(i);
-    totals.push_back({ToString(report.tolerances[i]),
-                      PercentText(report.overall.Completeness(index), 2),
-                      PercentText(report.overall.Accuracy(index), 2),
-                      PercentText(report.overall.F1(index), 2)});
-  }
   stream << "\n";
-  PrintTable(totals, stream);
+  PrintTotals(report.overall, report.tolerances, stream);
+  for (const TexturenessScore& entry : report.by_textureness) {
+    stream << "\nTextureness below " << entry.max_textureness << ": coverage "
+           << PercentText(entry.score.Coverage(), 1) << " % of "
+           << entry.score.num_pixels << " pixels, "
+           << PercentText(entry.score.MeasurementCoverage(), 1)
+           << " % of those with a measurement\n";
+    PrintTotals(entry.score, report.tolerances, stream);
+  }
 }
 
 nlohmann::json ScoresToJson(const ScoreReport& report) {
   nlohmann::json json;
-  json["overall"] = ToJson(report.overall, report.tolerances);
-  json["overall"]["num_maps"] = report.overall.num_maps;
+  json["overall"] = OverallToJson(report.overall, report.tolerances);
   json["images"] = nlohmann::json::array();
   for (size_t i = 0; i < report.names.size(); ++i) {
     nlohmann::json image = ToJson(report.scores[i], report.tolerances);
     image["name"] = report.names[i];
     json["images"].push_back(image);
+  }
+  json["by_textureness"] = nlohmann::json::array();
+  for (const TexturenessScore& entry : report.by_textureness) {
+    json["by_textureness"].push_back(
+        {{"max_textureness", entry.max_textureness},
+         {"score", OverallToJson(entry.score, report.tolerances)}});
   }
   return json;
 }

@@ -11,6 +11,12 @@
 
 namespace tapa {
 
+// The score of all pixels whose textureness is below a bound, in all views.
+struct TexturenessScore {
+  double max_textureness = 0;
+  DepthMapScore score;
+};
+
 // Scores of all views of a workspace.
 struct ScoreReport {
   std::vector<Tolerance> tolerances;
@@ -19,15 +25,18 @@ struct ScoreReport {
   std::vector<DepthMapScore> scores;
   // The score of all views together.
   DepthMapScore overall;
+  std::vector<TexturenessScore> by_textureness;
 };
 
 // Writes what a person wants to see: one line per view, then the overall score
-// at every tolerance. Shares are in per cent, "-" where there is none.
+// at every tolerance, and the same for every bound of textureness. Shares are
+// in per cent, "-" where there is none.
 void PrintScores(const ScoreReport& report, std::ostream& stream);
 
-// All figures: {"overall": SCORE, "images": [SCORE with "name", ...]}. Shares
-// are 0 to 1, errors in metres or relative to the true depth, null where there
-// is nothing to measure.
+// All figures: {"overall": SCORE, "images": [SCORE with "name", ...],
+// "by_textureness": [{"max_textureness", "score": SCORE}, ...]}. Shares are 0
+// to 1, errors in metres or relative to the true depth, null where there is
+// nothing to measure.
 nlohmann::json ScoresToJson(const ScoreReport& report);
 
 // A share of 0 to 1 in per cent with `digits` decimals, "-" if there is none.

@@ -147,12 +147,11 @@ def run(source_dir, bin_dir, out, case, options):
     print(result.stdout)
     if result.returncode != 0:
         raise ValueError(f"exit status {result.returncode}")
-    scores = {}
-    for part, name in (("all", "scores"), ("low", "scores_low_texture")):
-        path = os.path.join(out, name + ".json")
-        with open(path, encoding="utf-8") as file:
-            scores[part] = json.load(file)["overall"]
-    return scores, cpu_seconds(result.stdout)
+    with open(os.path.join(out, "scores.json"), encoding="utf-8") as file:
+        scores = json.load(file)
+    return ({"all": scores["overall"],
+             "low": scores["by_textureness"][0]["score"]},
+            cpu_seconds(result.stdout))
 
 
 def main():

@@ -82,7 +82,7 @@ TEST_F(EvaluateDepthMapsTest, TableAndJson) {
 
   const auto json = nlohmann::json::parse(ReadText(folder_.File("s.json")));
   EXPECT_EQ(json["input_type"], "geometric");
-  EXPECT_TRUE(json["max_textureness"].is_null());
+  EXPECT_TRUE(json["by_textureness"].empty());
   ASSERT_EQ(json["images"].size(), 2u);
   EXPECT_EQ(json["images"][0]["name"], "a.jpg");
   const auto& a = json["images"][0]["tolerances"];
@@ -131,7 +131,7 @@ TEST_F(EvaluateDepthMapsTest, InvalidDepthsAreReported) {
   EXPECT_EQ(json["images"][0]["num_estimates"], 22);
 }
 
-TEST_F(EvaluateDepthMapsTest, LowTextureOnly) {
+TEST_F(EvaluateDepthMapsTest, BoundsOfTextureness) {
   // The left half of the photograph is flat; the patch reaches two pixels.
   cv::Mat image(4, 40, CV_8UC1, cv::Scalar(100));
   for (int row = 0; row < 4; ++row) {
@@ -147,12 +147,22 @@ TEST_F(EvaluateDepthMapsTest, LowTextureOnly) {
                 std::vector<uint16_t>(160, 8000));
   const std::string both = "--workspace_path " + other.path() +
                            "/w --ground_truth_path " + other.path() + "/gt ";
-  const Result result = Run(both + "--max_textureness 0.75 --json s.json");
+  const Result result = Run(both + "--max_textureness 0.75,1 --json s.json");
   EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.out.find("Textureness below 0.75: coverage 100.0 % of 72"),
+            std::string::npos)
+      << result.out;
   const auto json = nlohmann::json::parse(ReadText(folder_.File("s.json")));
-  EXPECT_EQ(json["max_textureness"], 0.75);
-  EXPECT_EQ(json["overall"]["num_measurements"], 4 * 18);
-  EXPECT_EQ(json["overall"]["num_pixels"], 4 * 18);
+  EXPECT_EQ(json["overall"]["num_pixels"], 4 * 40);
+  const auto& bounds = json["by_textureness"];
+  ASSERT_EQ(bounds.size(), 2u);
+  EXPECT_EQ(bounds[0]["max_textureness"], 0.75);
+  EXPECT_EQ(bounds[0]["score"]["num_maps"], 1);
+  EXPECT_EQ(bounds[0]["score"]["num_measurements"], 4 * 18);
+  EXPECT_EQ(bounds[0]["score"]["num_pixels"], 4 * 18);
+  // Textureness does not reach 1.
+  EXPECT_EQ(bounds[1]["max_textureness"], 1);
+  EXPECT_EQ(bounds[1]["score"], json["overall"]);
 }
 
 TEST_F(EvaluateDepthMapsTest, Pictures) {
@@ -191,8 +201,10 @@ TEST_F(EvaluateDepthMapsTest, BadArguments) {
   ExpectError(kBoth + "--depth_scale 0", "--depth_scale");
   ExpectError(kBoth + "--depth_scale x", "depth_scale");
   ExpectError(kBoth + "--max_textureness 0.5", "--max_textureness");
-  ExpectError(kBoth + "--max_textureness nan", "--max_textureness");
+  ExpectError(kBoth + "--max_textureness 0.75,1.1", "--max_textureness");
   for (const char* list : {"''", "0.1,", "0.1,x", "-1", "0", "nan"}) {
+    ExpectError(kBoth + "--max_textureness " + list,
+                "list of positive numbers");
     ExpectError(kBoth + "--tolerances " + list, "list of positive numbers");
     ExpectError(kBoth + "--relative_tolerances " + list,
                 "list of positive numbers");

@@ -48,6 +48,7 @@ ScoreReport MakeReport() {
   report.scores.push_back(scorer.Add(depth, truth));
   report.scores.push_back(scorer.Add(depth, Map<float>(2, 2, 0.0f)));
   report.overall = scorer.Overall();
+  report.by_textureness = {{0.75, report.scores[0]}};
   return report;
 }
 
@@ -67,6 +68,11 @@ TEST(ScoreTableTest, TableIsAligned) {
   EXPECT_NE(table[2].find("85.7"), std::string::npos) << table[2];
   EXPECT_EQ(table[3].back(), '-') << table[3];
   EXPECT_NE(stream.str().find("25 cm               75.00      100.00  85.71"),
+            std::string::npos)
+      << stream.str();
+  EXPECT_NE(stream.str().find("Textureness below 0.75: coverage 75.0 % of 4 "
+                              "pixels, 75.0 % of those with a measurement\n"
+                              "Tolerance  Completeness %"),
             std::string::npos)
       << stream.str();
 }
@@ -91,6 +97,11 @@ TEST(ScoreTableTest, Json) {
   EXPECT_EQ(json["overall"]["num_maps"], 2);
   EXPECT_EQ(json["overall"]["num_pixels"], 8);
   EXPECT_EQ(json["overall"]["num_measurements"], 4);
+  ASSERT_EQ(json["by_textureness"].size(), 1u);
+  const nlohmann::json& low = json["by_textureness"][0];
+  EXPECT_EQ(low["max_textureness"], 0.75);
+  EXPECT_EQ(low["score"]["num_maps"], 1);
+  EXPECT_EQ(low["score"]["tolerances"][0]["completeness"], 0.75);
 }
 
 TEST(WorkspaceTest, ListsMapsOfOneTypeByName) {

@@ -1,0 +1,241 @@
+"""Runs and scores methods on sets of photographs."""
+
+import dataclasses
+import os
+import re
+import shutil
+
+from . import cloud_scores, depth_scores, files, links, processes, stereo_run
+from .methods import METHODS
+from .processes import Failure
+
+
+@dataclasses.dataclass
+class Benchmark:
+    """What is compared on one set of photographs.
+
+    Runs stand in OUT/NAME/METHOD-SEED. data has images/, sparse/ and gt_depth/
+    or scans/, in the format of examples/room.
+    """
+    name: str
+    data: str
+    methods: list = dataclasses.field(default_factory=lambda: ["plain", "tapa"])
+    seeds: list = dataclasses.field(default_factory=lambda: [0])
+    # More options of patch_match_stereo, for all methods.
+    options: list = dataclasses.field(default_factory=list)
+    sources: int = 10
+    every: int = 1
+    # Those that tables show, in metres and in per cent of the depth. Scored are
+    # those of depth_scores, too.
+    tolerances: list = dataclasses.field(
+        default_factory=lambda: [0.01, 0.02, 0.05, 0.1])
+    relative_tolerances: list = dataclasses.field(default_factory=lambda: [1])
+    # (name, path) of what others made: maps or a PLY.
+    compare: list = dataclasses.field(default_factory=list)
+    # Names of the photographs that pictures show.
+    views: list = dataclasses.field(default_factory=list)
+
+    def folder(self, out, *parts):
+        return os.path.join(out, self.name, *parts)
+
+    def shown_methods(self):
+        return self.methods + [name for name in dict(self.compare)
+                               if name not in self.methods]
+
+    def shown_tolerances(self):
+        """(value, unit) of each."""
+        return ([(value, "m") for value in self.tolerances]
+                + [(value, "%") for value in self.relative_tolerances])
+
+
+def check(benchmark):
+    """Raises Failure if this cannot be run."""
+    for part in ("images", "sparse"):
+        if not os.path.isdir(os.path.join(benchmark.data, part)):
+            raise Failure(f"{benchmark.data} has no folder {part}")
+    if not (has_depth(benchmark) or own_scans(benchmark)):
+        raise Failure(f"{benchmark.data} has neither gt_depth/ nor a MeshLab "
+                      "project in scans/, so that nothing can be scored")
+    for method in benchmark.methods:
+        if method not in METHODS:
+            raise Failure(f"unknown method {method}; there are "
+                          + ", ".join(METHODS))
+    for name, path in benchmark.compare:
+        check_comparison(name, path)
+    for view in benchmark.views:
+        if view not in links.photographs(benchmark.data, benchmark.every):
+            raise Failure(f"{benchmark.data}/images has no photograph {view} "
+                          "that takes part")
+
+
+def check_comparison(name, path):
+    if name in METHODS or not re.fullmatch(r"[\w.+-]+", name):
+        raise Failure(f"{name} cannot be compared under this name; choose "
+                      "letters, digits and _.+-, and no method's name")
+    if not os.path.exists(path):
+        raise Failure(f"there is no {path} to compare with")
+    if not os.path.isdir(path) and not path.lower().endswith(".ply"):
+        raise Failure(f"{path} is neither a folder of depth maps nor a PLY")
+
+
+def has_depth(benchmark):
+    return os.path.isdir(os.path.join(benchmark.data, "gt_depth"))
+
+
+def own_scans(benchmark):
+    """The MeshLab project of scans that comes with a set, "" if none does."""
+    folder = os.path.join(benchmark.data, "scans")
+    projects = sorted(name for name in (
+        os.listdir(folder) if os.path.isdir(folder) else [])
+        if name.endswith(".mlp"))
+    return os.path.join(folder, projects[0]) if projects else ""
+
+
+def stereo_runs(benchmark, out, bin_dir):
+    """The runs of all methods and seeds."""
+    return [stereo_run.Run(
+        data=benchmark.data, set=benchmark.name, method=method, seed=seed,
+        folder=benchmark.folder(out, stereo_run.folder_name(method, seed)),
+        options=list(benchmark.options), sources=benchmark.sources,
+        every=benchmark.every, bin_dir=bin_dir)
+        for seed in benchmark.seeds for method in benchmark.methods]
+
+
+class Scorer:
+    """Scores what is in the folders of one set."""
+
+    def __init__(self, benchmark, out, bin_dir, evaluator=None):
+        """evaluator: of points; None: points are not scored."""
+        self._benchmark = benchmark
+        self._out = out
+        self._bin_dir = bin_dir
+        self._evaluator = evaluator
+        self._scans = None
+
+    def score_depth(self, folder):
+        if has_depth(self._benchmark):
+            depth_scores.score(
+                folder, os.path.join(self._benchmark.data, "gt_depth"),
+                tolerances=sorted({*depth_scores.TOLERANCES,
+                                   *self._benchmark.tolerances}),
+                relative_tolerances=sorted({
+                    *depth_scores.RELATIVE_TOLERANCES,
+                    *self._benchmark.relative_tolerances}),
+                bin_dir=self._bin_dir)
+
+    def score_clouds(self, folder):
+        if self._evaluator is None:
+            return
+        names = [name for name in stereo_run.FUSIONS
+                 if os.path.exists(os.path.join(folder, name + ".ply"))]
+        project, options = self._find_scans()
+        cloud_scores.score(
+            folder, names, project, self._evaluator,
+            sorted({*cloud_scores.TOLERANCES, *self._benchmark.tolerances}),
+            options)
+
+    def _find_scans(self):
+        """The MeshLab project, and options of the evaluator that go with it."""
+        if self._scans is None:
+            own = own_scans(self._benchmark)
+            self._scans = (own, []) if own else self._make_scans()
+        return self._scans
+
+    def _make_scans(self):
+        """What scanners at the cameras would have measured."""
+        from . import depth_scans
+        folder = self._benchmark.folder(self._out, "scans")
+        project = os.path.join(folder, "scan_alignment.mlp")
+        if not os.path.exists(project):
+            processes.say(f"{folder}: scans from measured depth ...")
+            try:
+                depth_scans.make_scans(self._benchmark.data, folder)
+            except ValueError as error:
+                raise Failure(str(error)) from error
+        about = files.read_json(os.path.join(folder, "scans.json"))
+        return project, ["--beam_divergence_halfangle_deg",
+                         f"{about['beam_divergence_halfangle_deg']:.6g}"]
+
+
+def run(benchmark, out, bin_dir, evaluator=None):
+    """Does what is missing. What fails is recorded, and the others go on.
+
+    Returns a list of (folder, message) of what failed. Raises Interrupted.
+    """
+    scorer = Scorer(benchmark, out, bin_dir, evaluator)
+    failures = []
+    for one in stereo_runs(benchmark, out, bin_dir):
+        _attempt(failures, one.folder,
+                 [("stereo", lambda one=one: stereo_run.complete(one)),
+                  ("depth scores", lambda one=one: scorer.score_depth(one.folder)),
+                  ("cloud scores",
+                   lambda one=one: scorer.score_clouds(one.folder))])
+    for name in dict(benchmark.compare):
+        folder = benchmark.folder(out, stereo_run.folder_name(name, 0))
+        paths = [path for other, path in benchmark.compare if other == name]
+        _attempt(failures, folder, [
+            ("comparison",
+             lambda: take_comparison(benchmark, folder, name, paths)),
+            ("depth scores", lambda: _has_maps(folder)
+             and scorer.score_depth(folder)),
+            ("cloud scores", lambda: scorer.score_clouds(folder))])
+    return failures
+
+
+def _attempt(failures, folder, steps):
+    """Steps one after the other until one fails."""
+    for step, function in steps:
+        try:
+            function()
+        except Failure as error:
+            processes.say(f"ERROR: {folder}: {error}")
+            failures.append((folder, str(error)))
+            if step != "stereo":  # That records it by itself.
+                stereo_run.note_failure(folder, step, error)
+            return
+    stereo_run.note_failure(folder, "", None)
+
+
+def _has_maps(folder):
+    return os.path.isdir(os.path.join(folder, "stereo"))
+
+
+def take_comparison(benchmark, folder, name, paths):
+    """Links what another tool made into a folder of results."""
+    paths = [os.path.abspath(path) for path in paths]
+    record = stereo_run.load_record(folder)
+    if record is not None and record.get("compare") != paths:
+        shutil.rmtree(folder)  # Links and scores of something else.
+    os.makedirs(folder, exist_ok=True)
+    record = {"set": benchmark.name, "method": name, "seed": 0, "options": [],
+              "compare": paths, "done": [], "failed": None, "views": None,
+              "image_size": None, "version": None, "machine": None,
+              "seconds": {}, "cpu_seconds": {}, "peak_memory_bytes": {}}
+    for path in paths:
+        if os.path.isdir(path):
+            links.make_view_workspace(
+                benchmark.data, path, folder,
+                links.photographs(benchmark.data, benchmark.every))
+            record["views"], record["image_size"] = (
+                stereo_run.describe_maps(folder))
+        else:
+            links.link(path, os.path.join(folder, "fused.ply"))
+    files.write_json(os.path.join(folder, "record.json"), record)
+
+
+def missing_commands(benchmark, out, bin_dir, evaluator=None):
+    """The commands that run() would execute for the methods, in order."""
+    commands = []
+    for one in stereo_runs(benchmark, out, bin_dir):
+        commands += stereo_run.missing_commands(one)
+        if has_depth(benchmark) and depth_scores.load(one.folder) is None:
+            commands.append(depth_scores.command(
+                one.folder, os.path.join(benchmark.data, "gt_depth"),
+                one.path("depth_scores.json"), bin_dir=bin_dir))
+        if evaluator is None or cloud_scores.load(one.folder):
+            continue
+        scans = own_scans(benchmark) or benchmark.folder(
+            out, "scans", "scan_alignment.mlp")
+        commands += [cloud_scores.command(evaluator, one.path(name + ".ply"),
+                                          scans) for name in one.fusions]
+    return commands

@@ -1,0 +1,197 @@
+"""Reports as Markdown, with tables as CSV and figures beside them."""
+
+import os
+
+from . import (depth_scores, eth3d_tables, figures, files, pictures, results,
+               tables)
+from .methods import ABLATION, TAPA_ABLATION
+
+GLOSSARY = """\
+- **Completeness**: share of what was measured that is reconstructed within the
+  tolerance. **Accuracy**: share of what is reconstructed that is that close to the
+  measurement. **F1**: their harmonic mean. Higher is better for all three.
+- **Textureness** is 0.5 where a photograph is flat and tends to 1 where it has much
+  texture. **Low texture**: below 0.75.
+- **COLMAP** is COLMAP's own algorithm (method `plain`), **TAPA** is
+  `--PatchMatchStereo.tapa 1` (`tapa`), **paper's TAPA** is TAPA without completion, as
+  the paper describes it (`paper`).
+- "-" is what nobody has run or what cannot be measured. It is not zero.
+"""
+
+
+class SetReport:
+    """Tables, figures and pictures of one set, as Markdown.
+
+    Tables go to csv_folder, too, and figures to image_folder; page_folder is
+    where the page will stand, which links to them. Every method returns ""
+    where there is nothing to show.
+    """
+
+    def __init__(self, benchmark, out, page_folder, image_folder,
+                 csv_folder=None, bin_dir=None):
+        self.benchmark = benchmark
+        self.found = results.load_set(out, benchmark.name)
+        self._methods = benchmark.shown_methods()
+        self._page = page_folder
+        self._images = image_folder
+        self._csv = csv_folder
+        self._bin_dir = bin_dir
+
+    def block(self, kind):
+        """One of BLOCKS."""
+        return BLOCKS[kind](self)
+
+    def depth(self):
+        return self._depth("depth", None)
+
+    def low_texture(self):
+        return self._depth("low_texture", depth_scores.LOW_TEXTURE)
+
+    def _depth(self, name, bound):
+        if not self._any(lambda run: run.depth):
+            return ""
+        return self._table(name, tables.depth_table(
+            self.found, self._methods, self.benchmark.shown_tolerances(),
+            bound))
+
+    def cost(self):
+        return self._table("cost", tables.cost_table(self.found, self._methods))
+
+    def clouds(self):
+        """With the same thresholds for all methods, and with COLMAP's own."""
+        text = []
+        for name in ("fused", "fused_default"):
+            if self._any(lambda run, name=name: name in run.clouds):
+                text.append(self._table("points_" + name, tables.cloud_table(
+                    self.found, self._methods, self.benchmark.tolerances,
+                    name)))
+        return "\n".join(text)
+
+    def ablation(self):
+        """The paper's Table 2, of those families of methods that are shown."""
+        text = []
+        for family in (ABLATION, TAPA_ABLATION):
+            if any(method in self._methods for method in family[1:-1]) and (
+                    self._any(lambda run: "fused" in run.clouds)):
+                text.append(self._table("ablation_" + family[-1],
+                                        eth3d_tables.table2(
+                    [self.found], family, place=" on " + self.benchmark.name)))
+        return "\n".join(text)
+
+    def errors(self):
+        return self._figure("errors", figures.draw_errors)
+
+    def textureness(self):
+        return self._figure("textureness", figures.draw_textureness)
+
+    def pictures(self):
+        text = []
+        for view in self.benchmark.views:
+            stem = os.path.splitext(view)[0].replace(os.sep, "_")
+            path = self._image(f"{stem}.jpg")
+            caption = pictures.draw_comparison(
+                path, self.benchmark.data, self.found, self._methods, view,
+                self._bin_dir)
+            if caption:
+                text.append(self._embed(path, caption))
+        return "\n".join(text)
+
+    def provenance(self):
+        """Version and machine of the runs, in one paragraph."""
+        runs = [run for method in self._methods
+                for run in self.found.get(method, [])
+                if run.record["version"] is not None]
+        if not runs:
+            return ""
+        versions = sorted({run.record["version"] for run in runs})
+        machines = sorted({machine_text(run.record["machine"])
+                           for run in runs})
+        return (f"Run with {'; '.join(versions)} on {'; '.join(machines)}.\n")
+
+    def missing(self):
+        """What has no result, a line each."""
+        lines = []
+        for method in self.benchmark.methods:
+            runs = {run.record["seed"]: run
+                    for run in self.found.get(method, [])}
+            for seed in self.benchmark.seeds:
+                name = f"{self.benchmark.name}: {method}, seed {seed}"
+                if seed not in runs:
+                    lines.append(f"- {name}: not run")
+                elif runs[seed].failure:
+                    lines.append(f"- {name}: {runs[seed].failure}")
+                elif "stereo" not in runs[seed].record["done"]:
+                    lines.append(f"- {name}: not finished")
+        for method, _ in self.benchmark.compare:
+            for run in self.found.get(method, []):
+                if run.failure:
+                    lines.append(f"- {self.benchmark.name}: {method}: "
+                                 f"{run.failure}")
+        return lines
+
+    def _any(self, condition):
+        return any(condition(run) for method in self._methods
+                   for run in self.found.get(method, []))
+
+    def _table(self, name, table):
+        if self._csv:
+            files.write_text(
+                os.path.join(self._csv, f"{self.benchmark.name}_{name}.csv"),
+                table.csv())
+        return table.markdown()
+
+    def _image(self, name):
+        return os.path.join(self._images, f"{self.benchmark.name}_{name}")
+
+    def _figure(self, name, draw):
+        path = self._image(name + ".png")
+        caption = draw(path, self.found, self._methods, self.benchmark.name)
+        return self._embed(path, caption) if caption else ""
+
+    def _embed(self, path, caption):
+        link = os.path.relpath(path, self._page).replace(os.sep, "/")
+        title = caption.split("**")[1].rstrip(".")
+        return f"![{title}]({link})\n\n{caption}\n"
+
+
+BLOCKS = {"depth": SetReport.depth, "low_texture": SetReport.low_texture,
+          "cost": SetReport.cost, "clouds": SetReport.clouds,
+          "ablation": SetReport.ablation, "errors": SetReport.errors,
+          "textureness": SetReport.textureness,
+          "pictures": SetReport.pictures}
+
+
+def machine_text(machine):
+    """"AMD EPYC, 2 cores, 25 GB"."""
+    text = f"{machine['cpu']}, {machine['cores']} cores"
+    if machine["memory_bytes"]:
+        text += f", {machine['memory_bytes'] / 1e9:.0f} GB"
+    return text + (f", {machine['gpu']}" if machine["gpu"] else "")
+
+
+def describe_set(benchmark):
+    """What was done to get the results of a set, in one paragraph."""
+    text = f"Photographs of `{os.path.basename(os.path.normpath(benchmark.data))}`"
+    if benchmark.every > 1:
+        text += f", one in {benchmark.every}"
+    text += f", {benchmark.sources} source views"
+    if benchmark.options:
+        text += f", `{' '.join(benchmark.options)}`"
+    return text + ".\n"
+
+
+def write_report(path, reports, title, failures=(), notes=()):
+    """Writes a page with all blocks of all sets."""
+    parts = [f"# {title}\n", "How to read this page:\n", GLOSSARY]
+    parts += [note + "\n" for note in notes]
+    for one in reports:
+        parts += [f"## {one.benchmark.name}\n", describe_set(one.benchmark),
+                  one.provenance()]
+        parts += [one.block(kind) for kind in BLOCKS]
+    missing = [line for one in reports for line in one.missing()]
+    known = "\n".join(missing)
+    missing += [f"- {folder}: {message}" for folder, message in failures
+                if message not in known]
+    if missing:
+        parts += ["## What is missing\n", "\n".join(missing) + "\n"]
+    files.write_text(path, "\n".join(part for part in parts if part))
