@@ -1,0 +1,547 @@
+"""Every sub-command of scripts/eth3d on a miniature in ETH3D's own layout.
+
+A server on this machine stands in for the benchmark's site.
+"""
+
+import http.server
+import json
+import os
+import re
+import shutil
+import stat
+import subprocess
+import tempfile
+import threading
+import unittest
+
+import tiny_workspace as tiny
+
+SCRIPTS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../scripts")
+BIN_DIR = os.path.dirname(os.path.abspath(tiny.COLMAP))
+EVALUATOR = os.path.join(BIN_DIR, "evaluate_point_cloud")
+# Enough for points that can be scored, and fast.
+FAST = ["--image_sizes", "144", "--", "--PatchMatchStereo.num_iterations", "2",
+        "--PatchMatchStereo.window_radius", "3", "--PatchMatchStereo.num_samples", "6"]
+METHODS = ["--methods", "plain,tapa"]
+SEVEN_ZIP = next((name for name in ("7z", "7zz", "7za") if shutil.which(name)), None)
+
+
+def run_script(name, *arguments, **options):
+    """Runs a script; its result has all output as text in stdout."""
+    return subprocess.run(
+        [os.path.join(SCRIPTS, name), *arguments], stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=600,
+        env=dict(os.environ, TAPA_BIN_DIR=BIN_DIR), **options)
+
+
+def pack(archive, above, *members):
+    subprocess.run([SEVEN_ZIP, "a", "-mx=1", archive, *members], cwd=above, check=True,
+                   stdout=subprocess.DEVNULL)
+
+
+class Site:
+    """Serves files, by name, and remembers what was asked of it.
+
+    A file in `cut` ends after so many bytes, as if the line broke.
+    """
+
+    def __init__(self):
+        self.files = {}
+        self.cut = {}
+        self.requests = []
+        site = self
+
+        class Handler(http.server.BaseHTTPRequestHandler):
+
+            def log_message(self, *_):
+                pass
+
+            def do_HEAD(self):
+                self.answer(send=False)
+
+            def do_GET(self):
+                self.answer(send=True)
+
+            def answer(self, send):
+                name = self.path.removeprefix("/data/")
+                wanted = re.fullmatch(r"bytes=(\d+)-", self.headers.get("Range") or "")
+                begin = int(wanted[1]) if wanted else 0
+                site.requests.append((self.command, name, begin))
+                if name not in site.files:
+                    self.send_error(404)
+                    return
+                data = site.files[name]
+                self.send_response(206 if wanted else 200)
+                self.send_header("Content-Length", str(len(data) - begin))
+                if wanted:
+                    self.send_header("Content-Range",
+                                     f"bytes {begin}-{len(data) - 1}/{len(data)}")
+                self.end_headers()
+                if send:
+                    self.wfile.write(data[begin:site.cut.get(name, len(data))])
+
+        self.server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), Handler)
+        threading.Thread(target=self.server.serve_forever, daemon=True).start()
+        self.url = f"http://127.0.0.1:{self.server.server_port}/data"
+
+    def close(self):
+        self.server.shutdown()
+        self.server.server_close()
+
+
+class Case(unittest.TestCase):
+
+    def assert_failed(self, result, *texts):
+        """One line begins with ERROR; the texts are in the output."""
+        self.assertEqual(result.returncode, 1, result.stdout)
+        errors = [line for line in result.stdout.splitlines() if line.startswith("ERROR")]
+        self.assertEqual(len(errors), 1, result.stdout)
+        self.assertNotIn("Traceback", result.stdout)
+        for text in texts:
+            self.assertIn(text, result.stdout)
+
+    def assert_done(self, result):
+        self.assertEqual(result.returncode, 0, result.stdout)
+        self.assertNotIn("ERROR", result.stdout)
+
+    def make_folder(self):
+        folder = tempfile.mkdtemp(prefix="tapa-")
+        self.addCleanup(shutil.rmtree, folder, True)
+        return folder
+
+
+@unittest.skipIf(SEVEN_ZIP is None or shutil.which("curl") is None, "needs 7z and curl")
+class Download(Case):
+    """Archives of the rig's scene "tunnel", which has just one, and of "office"."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.made = tempfile.mkdtemp(prefix="tapa-")
+        cls.addClassCleanup(shutil.rmtree, cls.made, True)
+        cls.archives = {}
+        for scene, kinds in (("tunnel", ["rig_undistorted"]),
+                             ("office", ["dslr_undistorted", "dslr_scan_eval"])):
+            for kind in kinds:
+                member = os.path.join(scene, kind)
+                os.makedirs(os.path.join(cls.made, member))
+                with open(os.path.join(cls.made, member, "content"), "wb") as file:
+                    file.write(os.urandom(50000))
+                name = f"{scene}_{kind}.7z"
+                pack(name, cls.made, member)
+                with open(os.path.join(cls.made, name), "rb") as file:
+                    cls.archives[name] = file.read()
+
+    def setUp(self):
+        self.folder = self.make_folder()
+        self.site = Site()
+        self.addCleanup(self.site.close)
+        self.site.files = dict(self.archives)
+
+    def download(self, *arguments, scene="tunnel"):
+        choice = (["--resolution", "low", "--split", "test"] if scene == "tunnel"
+                  else ["--without_depth"])
+        return run_script("eth3d", "download", self.folder, "--base_url", self.site.url,
+                          "--scenes", scene, *choice, *arguments)
+
+    def content(self, member, root=None):
+        with open(os.path.join(root or self.folder, member, "content"), "rb") as file:
+            return file.read()
+
+    def assert_unpacked(self, member):
+        self.assertEqual(self.content(os.path.join("scenes", member)),
+                         self.content(member, self.made))
+
+    def test_fetches_verifies_and_unpacks(self):
+        self.assert_done(self.download("--yes", scene="office"))
+        self.assert_unpacked("office/dslr_undistorted")
+        self.assert_unpacked("office/dslr_scan_eval")
+        # Nothing is asked of the site again.
+        del self.site.requests[:]
+        self.assert_done(self.download("--yes", scene="office"))
+        self.assertEqual(self.site.requests, [])
+
+    def test_resumes(self):
+        name = "tunnel_rig_undistorted.7z"
+        self.site.cut[name] = 20000
+        result = self.download("--yes")
+        self.assert_failed(result, name, "1 of 1 failed")
+        self.assertFalse(os.path.exists(os.path.join(self.folder, "scenes", "tunnel")))
+        part = os.path.join(self.folder, "archives", name + ".part")
+        self.assertEqual(os.path.getsize(part), 20000)
+        self.site.cut.clear()
+        self.assert_done(self.download("--yes"))
+        self.assertIn(("GET", name, 20000), self.site.requests)
+        self.assert_unpacked("tunnel/rig_undistorted")
+        self.assertFalse(os.path.exists(part))
+
+    def test_damaged_on_its_way(self):
+        name = "tunnel_rig_undistorted.7z"
+        whole = self.site.files[name]
+        self.site.files[name] = whole[:30000] + bytes(100) + whole[30100:]
+        self.assert_failed(self.download("--yes"), name, "did not arrive whole")
+        self.assertFalse(os.path.exists(os.path.join(self.folder, "scenes", "tunnel")))
+        self.site.files[name] = whole
+        self.assert_done(self.download("--yes"))
+        self.assert_unpacked("tunnel/rig_undistorted")
+
+    def test_part_of_a_larger_archive(self):
+        name = "tunnel_rig_undistorted.7z"
+        os.makedirs(os.path.join(self.folder, "archives"))
+        with open(os.path.join(self.folder, "archives", name + ".part"), "wb") as file:
+            file.write(bytes(90000))
+        self.assert_done(self.download("--yes"))
+        self.assert_unpacked("tunnel/rig_undistorted")
+
+    def test_missing_archive_does_not_stop_the_others(self):
+        del self.site.files["office_dslr_undistorted.7z"]
+        result = self.download("--yes", scene="office")
+        self.assert_failed(result, "404", "1 of 2 failed", "office_dslr_undistorted.7z")
+        self.assert_unpacked("office/dslr_scan_eval")
+
+    def test_asks(self):
+        result = self.download(scene="office")
+        self.assert_failed(result, "0.10 MB would be fetched", "--yes")
+        self.assertNotIn("GET", [request[0] for request in self.site.requests])
+
+    def test_removes_archives(self):
+        self.assert_done(self.download("--yes", "--remove_archives"))
+        self.assert_unpacked("tunnel/rig_undistorted")
+        self.assertEqual(os.listdir(os.path.join(self.folder, "archives")),
+                         ["tunnel_rig_undistorted.7z.unpacked"])
+        self.assert_done(self.download("--yes", "--remove_archives"))
+
+    def test_dry_run(self):
+        result = self.download("--dry_run")
+        self.assert_done(result)
+        self.assertRegex(result.stdout, r"(?s)^curl .*/data/tunnel_rig_undistorted\.7z\n"
+                                        r"7z\S* t .*\.part\n7z\S* x .*\n$")
+        self.assertEqual(self.site.requests, [])
+        self.assertEqual(os.listdir(self.folder), [])
+
+    def test_whole_benchmark(self):
+        result = run_script("eth3d", "download", self.folder, "--dry_run", "--resolution", "both",
+                            "--split", "both")
+        self.assert_done(result)
+        fetched = [line.split()[-1] for line in result.stdout.splitlines()
+                   if line.startswith("curl")]
+        self.assertEqual(len(fetched), 4 * 18 + 17)
+        self.assertEqual({os.path.dirname(url) for url in fetched},
+                         {"https://www.eth3d.net/data"})
+
+    def test_unknown_scene(self):
+        self.assert_failed(self.download(scene="ofice"), "no scene ofice")
+
+
+class Prepare(Case):
+
+    @classmethod
+    def setUpClass(cls):
+        cls.made = tempfile.mkdtemp(prefix="tapa-")
+        cls.addClassCleanup(shutil.rmtree, cls.made, True)
+        result = run_script("miniature_eth3d.py", cls.made, "--scene", "attic", "--image_size",
+                            "96", "--views", "4", "--voxel_size", "0.1")
+        assert result.returncode == 0, result.stdout
+
+    def setUp(self):
+        self.folder = self.make_folder()
+        shutil.copytree(self.made, os.path.join(self.folder, "scenes"))
+
+    def prepare(self, *arguments):
+        return run_script("eth3d", "prepare", self.folder, *arguments)
+
+    def scene(self, *parts):
+        return os.path.join(self.folder, "scenes", "attic", *parts)
+
+    def set(self, *parts):
+        return os.path.join(self.folder, "sets", *parts)
+
+    def test_sets(self):
+        self.assert_done(self.prepare())
+        with open(self.set("attic_rig", "set.json"), encoding="utf-8") as file:
+            content = json.load(file)
+        self.assertEqual(
+            (content["scene"], content["resolution"], content["split"], content["photographs"],
+             content["depth_maps"], content["scans"]),
+            ("attic", "low", "training", 4, 4, True))
+        # Links are relative: the whole folder can be moved.
+        moved = self.folder + "-moved"
+        os.rename(self.folder, moved)
+        self.addCleanup(shutil.rmtree, moved, True)
+        for name in ("images/dslr_images_undistorted/DSC_0101.JPG", "sparse/points3D.txt",
+                     "gt_scans/scan_alignment.mlp"):
+            self.assertTrue(os.path.isfile(os.path.join(moved, "sets/attic_dslr", name)), name)
+        # The photographs as taken do not take part.
+        self.assertEqual(os.listdir(os.path.join(moved, "sets/attic_dslr/images")),
+                         ["dslr_images_undistorted"])
+
+    def test_depth_is_that_of_the_undistorted_photograph(self):
+        self.assert_done(self.prepare("--resolution", "high"))
+        width, height, depths = tiny.read_map(
+            self.set("attic_dslr/gt_depth/dslr_images_undistorted/DSC_0104.bin"))
+        self.assertEqual((width, height), (96, 64))
+        truth = self.true_depths("room_05.png", width, height)
+        errors = sorted(abs(depth / true - 1) for depth, true in zip(depths, truth) if depth > 0)
+        # Three of ten have no measurement, and a border was not photographed.
+        self.assertGreater(len(errors), 0.55 * width * height)
+        self.assertLess(len(errors), 0.75 * width * height)
+        self.assertLess(errors[len(errors) // 2], 0.004)
+        self.assertLess(errors[len(errors) * 9 // 10], 0.02)
+
+    def true_depths(self, name, width, height):
+        """The example's depth at the centres of the pixels of a smaller photograph."""
+        script = ("import cv2, sys; image = cv2.imread(sys.argv[1], -1); "
+                  "sys.stdout.buffer.write(image.astype('<u2').tobytes())")
+        data = subprocess.run(
+            ["/usr/bin/python3", "-c", script,
+             os.path.join(SCRIPTS, "../examples/room/gt_depth", name)],
+            check=True, stdout=subprocess.PIPE).stdout
+        for row in range(height):
+            for column in range(width):
+                y, x = int((row + 0.5) * 480 / height), int((column + 0.5) * 720 / width)
+                at = 2 * (720 * y + x)
+                yield int.from_bytes(data[at:at + 2], "little") / 4000
+
+    def test_depth_size(self):
+        self.assert_done(self.prepare("--depth_size", "48"))
+        path = self.set("attic_dslr/gt_depth/dslr_images_undistorted/DSC_0101.bin")
+        self.assertEqual(tiny.read_map(path)[:2], (48, 32))
+        # Maps of two sizes are not mixed.
+        self.assert_failed(self.prepare(), "--depth_size 48", "2 of 2 failed")
+        self.assertEqual(tiny.read_map(path)[:2], (48, 32))
+
+    def test_again_makes_only_what_is_missing(self):
+        self.assert_done(self.prepare())
+        folder = self.set("attic_dslr/gt_depth/dslr_images_undistorted")
+        paths = [os.path.join(folder, name) for name in sorted(os.listdir(folder))]
+        times = [os.stat(path).st_mtime_ns for path in paths]
+        os.remove(paths[0])
+        self.assert_done(self.prepare())
+        self.assertEqual([os.stat(path).st_mtime_ns for path in paths[1:]], times[1:])
+        self.assertTrue(os.path.exists(paths[0]))
+
+    def test_test_scene(self):
+        result = run_script("miniature_eth3d.py", os.path.join(self.folder, "scenes"), "--scene",
+                            "door", "--image_size", "96", "--views", "4", "--split", "test")
+        self.assert_done(result)
+        self.assert_done(self.prepare("--scenes", "door"))
+        with open(self.set("door_dslr", "set.json"), encoding="utf-8") as file:
+            content = json.load(file)
+        self.assertEqual((content["split"], content["depth_maps"], content["scans"]),
+                         ("test", 0, False))
+
+    def test_dry_run(self):
+        result = self.prepare("--dry_run")
+        self.assert_done(result)
+        self.assertIn("attic_rig", result.stdout)
+        self.assertFalse(os.path.exists(self.set()))
+
+    def expect_failure(self, *texts):
+        """The rig's set, of which nothing is broken, is made."""
+        self.assert_failed(self.prepare(), "1 of 2 failed", "attic_dslr", *texts)
+        self.assertTrue(os.path.exists(self.set("attic_rig", "set.json")))
+        self.assertFalse(os.path.exists(self.set("attic_dslr", "set.json")))
+
+    def test_missing_model(self):
+        os.remove(self.scene("dslr_calibration_undistorted", "points3D.txt"))
+        self.expect_failure("has no points3D.txt", "attic_dslr_undistorted.7z")
+
+    def test_missing_photograph(self):
+        os.remove(self.scene("images/dslr_images_undistorted/DSC_0107.JPG"))
+        self.expect_failure("DSC_0107.JPG is missing")
+
+    def test_depth_of_another_size(self):
+        with open(self.scene("ground_truth_depth/dslr_images/DSC_0104.JPG"), "ab") as file:
+            file.write(b"more")
+        self.expect_failure("ground_truth_depth/dslr_images/DSC_0104.JPG", "96x64 depths need")
+
+    def test_calibration_of_other_poses(self):
+        path = self.scene("dslr_calibration_jpg", "images.txt")
+        with open(path, encoding="utf-8") as file:
+            lines = file.read().split("\n")
+        words = lines[1].split()
+        words[5] = str(float(words[5]) + 0.1)
+        lines[1] = " ".join(words)
+        with open(path, "w", encoding="utf-8") as file:
+            file.write("\n".join(lines))
+        self.expect_failure("the pose of dslr_images/DSC_0101.JPG is another")
+
+    def test_nothing_unpacked(self):
+        shutil.rmtree(self.scene())
+        self.assert_failed(self.prepare(), "no unpacked scene", "download")
+
+    def test_lens_is_that_of_colmap(self):
+        # COLMAP finds the miniature's points where we projected them.
+        for calibration in ("dslr_calibration_jpg", "dslr_calibration_undistorted"):
+            out = os.path.join(self.folder, calibration)
+            os.makedirs(out)
+            result = tiny.run([tiny.COLMAP, "bundle_adjuster", "--input_path",
+                               self.scene(calibration), "--output_path", out,
+                               "--BundleAdjustment.max_num_iterations", "1"])
+            self.assertEqual(result.returncode, 0, result.stdout)
+            cost = re.search(r"Initial cost : ([0-9.e-]+)", result.stdout)
+            self.assertIsNotNone(cost, result.stdout)
+            self.assertLess(float(cost[1]), 0.1)  # Pixels; the photographs are small.
+
+
+class Pipeline(Case):
+    """From sets to a report and a submission, with two scenes of both tracks."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.mkdtemp(prefix="tapa-")
+        cls.addClassCleanup(shutil.rmtree, cls.folder, True)
+        cls.commands = [
+            ("miniature_eth3d.py", os.path.join(cls.folder, "scenes"), "--scene", "office",
+             "--image_size", "144", "--views", "4", "--voxel_size", "0.02"),
+            ("eth3d", "prepare", cls.folder),
+            ("eth3d", "run", cls.folder, "--resolution", "both", *METHODS, *FAST)]
+        for command in cls.commands:
+            result = run_script(*command)
+            assert result.returncode == 0, result.stdout
+
+    def path(self, *parts):
+        return os.path.join(self.folder, *parts)
+
+    def run_path(self, name, method, *parts):
+        return self.path("runs", "144", name, method + "-0", *parts)
+
+    def eth3d(self, command, *arguments, fast=FAST[:2]):
+        return run_script("eth3d", command, self.folder, *arguments, *fast)
+
+    def read_json(self, path):
+        with open(path, encoding="utf-8") as file:
+            return json.load(file)
+
+    def points(self, path):
+        with open(path, "rb") as file:
+            return int(re.search(rb"element vertex (\d+)", file.read(500))[1])
+
+    def test_1_runs_are_complete_and_recorded(self):
+        for name, error in (("office_dslr", "1"), ("office_rig", "0.5")):
+            for method in ("plain", "tapa"):
+                record = self.read_json(self.run_path(name, method, "record.json"))
+                self.assertEqual((record["set"], record["method"]), (name, method))
+                self.assertEqual(record["views"], 4)
+                self.assertGreater(record["seconds"]["stereo"], 0)
+                self.assertGreater(record["peak_memory_bytes"]["stereo"], 1e6)
+                options = " ".join(record["options"])
+                self.assertEqual("tapa_plane_distance 0.1" in options, method == "tapa")
+                self.assertIn("max_image_size 144", options)
+                with open(self.run_path(name, method, "fusion.log"), encoding="utf-8") as file:
+                    fusions = [line for line in file if line.startswith("$")]
+                self.assertIn(f"max_reproj_error {error} --StereoFusion.max_normal_error 20",
+                              fusions[0])
+                self.assertNotIn("max_reproj_error", fusions[1])
+        self.assertGreater(self.points(self.run_path("office_dslr", "tapa", "fused.ply")), 100)
+
+    def test_2_resumes(self):
+        maps = self.run_path("office_dslr", "plain", "stereo", "depth_maps",
+                             "dslr_images_undistorted", "DSC_0101.JPG.geometric.bin")
+        time = os.stat(maps).st_mtime_ns
+        cloud = self.run_path("office_dslr", "plain", "fused.ply")
+        os.remove(cloud)
+        result = run_script(*self.commands[-1][:3], "--dry_run", *METHODS, *FAST)
+        self.assertEqual(len(result.stdout.splitlines()), 1, result.stdout)
+        self.assertIn("stereo_fusion", result.stdout)
+        self.assertFalse(os.path.exists(cloud))
+        self.assert_done(run_script(*self.commands[-1]))
+        self.assertTrue(os.path.exists(cloud))
+        self.assertEqual(os.stat(maps).st_mtime_ns, time)
+
+    def test_3_evaluator_of_eth3d(self):
+        # It stands in for ETH3D's program, and prints its lines.
+        evaluator = self.path("evaluator")
+        with open(evaluator, "w", encoding="utf-8") as file:
+            file.write("#!/bin/sh\necho \"$@\" >> " + self.path("calls") + "\n"
+                       "echo Tolerances: 0.01 0.02 0.05 0.1 0.2 0.5\n"
+                       "echo Completenesses: 0.1 0.2 0.3 0.4 0.5 0.6\n"
+                       "echo Accuracies: 0.2 0.3 0.4 0.5 0.6 0.7\n"
+                       "echo F1-scores: 0.15 0.25 0.35 0.45 0.55 0.65\n")
+        os.chmod(evaluator, stat.S_IRWXU)
+        result = self.eth3d("evaluate", "--resolution", "both", *METHODS, "--eth3d_evaluator",
+                            evaluator)
+        self.assert_done(result)
+        with open(self.path("calls"), encoding="utf-8") as file:
+            calls = file.read().splitlines()
+        self.assertEqual(len(calls), 8)
+        self.assertIn("--tolerances 0.01,0.02,0.05,0.1,0.2,0.5", calls[0])
+        self.assertIn("gt_scans/scan_alignment.mlp", calls[0])
+        for name in ("office_dslr", "office_rig"):
+            for method in ("plain", "tapa"):
+                path = self.run_path(name, method, "cloud_scores.json")
+                scores = self.read_json(path)
+                self.assertEqual(scores["fused_default"]["f1"][1], 0.25)
+                os.remove(path)
+                depth = self.read_json(self.run_path(name, method, "depth_scores.json"))
+                self.assertEqual(depth["overall"]["num_maps"], 4)
+                self.assertGreater(depth["overall"]["num_measurements"], 1000)
+
+    @unittest.skipUnless(os.path.exists(EVALUATOR), "evaluate_point_cloud is not built")
+    def test_4_scores(self):
+        self.assert_done(self.eth3d("evaluate", *METHODS))
+        for method in ("plain", "tapa"):
+            scores = self.read_json(self.run_path("office_dslr", method, "cloud_scores.json"))
+            for name in ("fused", "fused_default"):
+                f1 = scores[name]["f1"]
+                self.assertEqual(f1, sorted(f1))
+                # Rough depth maps, but in the right place and of the right size.
+                self.assertGreater(scores[name]["accuracy"][-1], 0.8)
+                self.assertGreater(f1[-1], 0.3)
+
+    def test_5_submission(self):
+        result = self.eth3d("submit", "--method", "tapa")
+        self.assert_done(result)
+        folder = self.path("submission", "tapa-144", "high_res_multi_view")
+        self.assertIn(folder + ".7z", result.stdout.splitlines())
+        self.assertIn("without 24 of the benchmark's scenes", result.stdout)
+        self.assertEqual(sorted(os.listdir(folder)), ["office.ply", "office.txt"])
+        record = self.read_json(self.run_path("office_dslr", "tapa", "record.json"))
+        seconds = record["seconds"]["stereo"] + record["seconds"]["fused"]
+        with open(os.path.join(folder, "office.txt"), encoding="ascii") as file:
+            self.assertEqual(file.read(), f"runtime {seconds:.3f}\n")
+        listing = subprocess.run([SEVEN_ZIP, "l", "-ba", folder + ".7z"], check=True,
+                                 stdout=subprocess.PIPE, text=True).stdout
+        self.assertEqual({line.split()[-1] for line in listing.splitlines()},
+                         {"high_res_multi_view", "high_res_multi_view/office.ply",
+                          "high_res_multi_view/office.txt"})
+        # A run that is not there: no archive.
+        result = self.eth3d("submit", "--method", "paper")
+        self.assert_failed(result, "office_dslr", "has no run")
+        self.assertFalse(os.path.exists(
+            self.path("submission", "paper-144", "high_res_multi_view.7z")))
+
+    def test_6_a_scene_that_fails_does_not_stop_the_others(self):
+        result = run_script("miniature_eth3d.py", self.path("scenes"), "--scene", "broken",
+                            "--image_size", "96", "--views", "3")
+        self.assert_done(result)
+        photograph = self.path("scenes/broken/images/dslr_images_undistorted/DSC_0101.JPG")
+        with open(photograph, "wb") as file:
+            file.write(b"no photograph")
+        self.assert_done(run_script("eth3d", "prepare", self.folder, "--scenes", "broken"))
+        shutil.rmtree(self.run_path("office_dslr", "plain"))
+        result = run_script("eth3d", "run", self.folder, "--methods", "plain", *FAST)
+        self.assert_failed(result, "1 of 2 failed", "144/broken_dslr/plain-0")
+        # "broken" comes first in the alphabet.
+        self.assertTrue(os.path.exists(self.run_path("office_dslr", "plain", "fused.ply")))
+        record = self.read_json(self.run_path("broken_dslr", "plain", "record.json"))
+        self.assertIsNotNone(record["failed"])
+        result = self.eth3d("evaluate", "--methods", "plain", "--scenes", "broken")
+        self.assert_failed(result, "it is not complete", "scripts/eth3d run")
+        shutil.rmtree(self.path("sets", "broken_dslr"))
+
+    def test_7_wrong_words(self):
+        for words, text in ((("run", "--methods", "plane"), "no method plane"),
+                            (("run", "--scenes", "attic"), "no scene attic"),
+                            (("evaluate", "--eth3d_evaluator", "/nowhere"), "is no program"),
+                            (("submit", "--method", "plane"), "no method plane")):
+            with self.subTest(words=words):
+                self.assert_failed(self.eth3d(*words), text)
+
+    def test_8_other_options_are_not_mixed(self):
+        result = run_script("eth3d", "run", self.folder, "--methods", "tapa", "--scenes",
+                            "office", *FAST, "--PatchMatchStereo.filter", "0")
+        self.assert_failed(result, "office_dslr/tapa-0", "was made with options")
+
+
+if __name__ == "__main__":
+    unittest.main()
