@@ -48,6 +48,23 @@ class Benchmark:
                 + [(value, "%") for value in self.relative_tolerances])
 
 
+def command_text(benchmark):
+    """What to type for this on a command line; DATA is the data sets' folder."""
+    words = ["scripts/benchmark"]
+    inside = os.path.basename(os.path.normpath(benchmark.data))
+    words += ["examples/room" if inside == "room" else f"DATA/{inside}",
+              "--out", "OUT"]
+    for key in ("methods", "seeds", "sources", "every", "tolerances",
+                "relative_tolerances"):
+        value = getattr(benchmark, key)
+        if value != getattr(Benchmark("", ""), key):
+            words += ["--" + key, ",".join(f"{one:g}" if isinstance(one, float)
+                                           else str(one) for one in value)
+                      if isinstance(value, list) else str(value)]
+    return " ".join(words + (["--", *benchmark.options]
+                             if benchmark.options else []))
+
+
 def check(benchmark):
     """Raises Failure if this cannot be run."""
     for part in ("images", "sparse"):

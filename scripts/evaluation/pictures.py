@@ -4,10 +4,10 @@ import os
 import shutil
 
 from . import links, machine, processes
-from .methods import label
+from .methods import METHODS, label
 
-_WIDTH = 1000
-_QUALITY = 82
+_WIDTH = 900
+_QUALITY = 78
 
 
 def _stem(name):
@@ -82,7 +82,7 @@ def draw_comparison(output, data, found, methods, view, bin_dir=None):
     Returns the caption, None if no method has maps of this view.
     """
     paths, shown = [], []
-    for method in methods:
+    for method in chosen_methods(methods):
         for run in found.get(method, [])[:1]:
             if links.has_map(run.folder, view):
                 paths += draw_views(data, run.folder,
@@ -96,6 +96,12 @@ def draw_comparison(output, data, found, methods, view, bin_dir=None):
         label(method) for method in shown) + ". Black in the depth is \"no "
             "estimate\"; the error is relative to the true depth, from green "
             "(0.1 % and less) over yellow (1 %) to red (10 % and more).")
+
+
+def chosen_methods(methods):
+    """Those that pictures show: not the ones that leave parts of TAPA out."""
+    return [method for method in methods
+            if method not in METHODS or "-" not in method] or methods[:2]
 
 
 def choose_views(data, every, count):

@@ -9,6 +9,7 @@
     data = "office_entrance"      # in the folder of data sets, or in the repository
     methods = ["plain", "tapa"]
     seeds = [0, 1, 2]             # and so on: see benchmark.Benchmark
+    num_views = 1                 # of pictures, where no views are named
 
     [[section]]
     title = "..."                 # level 2; left out: no heading
@@ -16,18 +17,19 @@
     set = "NAME"                  # its tables and figures follow the text
     show = ["depth", "errors"]    # report.BLOCKS, in this order
     methods = ["plain", "tapa"]   # only these
+    command = true                # with the command that runs the set
 """
 
 import dataclasses
 import os
 import tomllib
 
-from . import benchmark, files, report
+from . import benchmark, files, pictures, report, results
 from .processes import Failure
 
 _SET_KEYS = {field.name for field in dataclasses.fields(benchmark.Benchmark)}
 _SECTION_KEYS = {"title", "text", "set", "show", "methods", "tolerances",
-                 "relative_tolerances", "level"}
+                 "relative_tolerances", "level", "command"}
 
 
 class Plan:
@@ -40,23 +42,32 @@ class Plan:
         self._content = content
         self.sets = {}
         for name, values in content.get("sets", {}).items():
-            _check_keys(path, f"sets.{name}", values, _SET_KEYS - {"name"})
+            _check_keys(path, f"sets.{name}", values, 
+                        _SET_KEYS - {"name"} | {"num_views"})
             if "data" not in values:
                 raise Failure(f"{path}: sets.{name} has no data")
             values = dict(values, data=_find_data(values["data"], data_folder,
                                                   root))
-            self.sets[name] = benchmark.Benchmark(name=name, **values)
+            count = values.pop("num_views", 0)
+            self.sets[name] = one = benchmark.Benchmark(name=name, **values)
+            if not one.views and os.path.isdir(one.data):
+                one.views = pictures.choose_views(one.data, one.every, count)
         for section in content.get("section", []):
             _check_keys(path, "a section", section, _SECTION_KEYS)
             _check_section(path, section, self.sets)
 
-    def page_path(self):
-        return os.path.join(self._folder, self._content["page"])
+    def page_folder(self, out):
+        """The plan's folder, or OUT as long as a set has no results at all."""
+        return (self._folder if all(results.load_set(out, name)
+                                    for name in self.sets) else out)
 
     def write(self, out, bin_dir=None):
-        """Writes the page from what is in OUT. Returns what is missing."""
-        images = os.path.join(self._folder,
-                              self._content.get("images", "images"))
+        """Writes the page from what is in OUT.
+
+        Returns its path, and what is missing.
+        """
+        folder = self.page_folder(out)
+        page = os.path.join(folder, self._content["page"])
         parts = [f"# {self._content['title']}\n",
                  self._content.get("text", "").strip() + "\n"]
         for section in self._content.get("section", []):
@@ -66,24 +77,29 @@ class Plan:
             if "text" in section:
                 parts.append(section["text"].strip() + "\n")
             if "set" in section:
-                parts += self._results(section, out, images, bin_dir)
-        files.write_text(self.page_path(), "\n".join(
+                parts += self._results(section, out, folder, bin_dir)
+        files.write_text(page, "\n".join(
             part for part in parts if part.strip()))
-        return [line for one in self.sets.values()
-                for line in report.SetReport(one, out, "", "").missing()]
+        return page, [line for one in self.sets.values()
+                      for line in report.SetReport(one, out, "", "").missing()]
 
-    def _results(self, section, out, images, bin_dir):
+    def _results(self, section, out, folder, bin_dir):
         one = dataclasses.replace(
             self.sets[section["set"]],
             **{key: section[key] for key in (
                 "methods", "tolerances", "relative_tolerances")
                if key in section})
-        made = report.SetReport(one, out, self._folder, images,
-                                os.path.join(out, "tables"), bin_dir)
-        blocks = [made.block(kind) for kind in section["show"]]
-        if not any(blocks) or not made.found:
-            return [f"*`{one.name}` has not been run.*\n"]
-        return blocks + [made.provenance()]
+        made = report.SetReport(
+            one, out, folder,
+            os.path.join(folder, self._content.get("images", "images")),
+            os.path.join(out, "tables"), bin_dir)
+        with_command = section.get("command", True)
+        parts = [f"    {benchmark.command_text(self.sets[one.name])}\n"
+                 ] if with_command else []
+        if not made.found:
+            return parts + [f"*`{one.name}` has not been run.*\n"]
+        parts += [made.block(kind) for kind in section["show"]]
+        return parts + ([made.provenance()] if with_command else [])
 
 
 def _read(path):

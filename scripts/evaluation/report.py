@@ -3,13 +3,15 @@
 import os
 
 from . import (depth_scores, eth3d_tables, figures, files, pictures, results,
-               tables)
+               stereo_run, tables)
 from .methods import ABLATION, TAPA_ABLATION
 
 GLOSSARY = """\
 - **Completeness**: share of what was measured that is reconstructed within the
   tolerance. **Accuracy**: share of what is reconstructed that is that close to the
-  measurement. **F1**: their harmonic mean. Higher is better for all three.
+  measurement. **F1**: their harmonic mean. Higher is better for all three. Of depth
+  maps pixels are counted, of all views together; of points, voxels of 1 cm, as ETH3D
+  does it.
 - **Textureness** is 0.5 where a photograph is flat and tends to 1 where it has much
   texture. **Low texture**: below 0.75.
 - **COLMAP** is COLMAP's own algorithm (method `plain`), **TAPA** is
@@ -30,7 +32,8 @@ class SetReport:
     def __init__(self, benchmark, out, page_folder, image_folder,
                  csv_folder=None, bin_dir=None):
         self.benchmark = benchmark
-        self.found = results.load_set(out, benchmark.name)
+        self.found, self._others = _split(
+            results.load_set(out, benchmark.name), benchmark)
         self._methods = benchmark.shown_methods()
         self._page = page_folder
         self._images = image_folder
@@ -116,7 +119,10 @@ class SetReport:
                     for run in self.found.get(method, [])}
             for seed in self.benchmark.seeds:
                 name = f"{self.benchmark.name}: {method}, seed {seed}"
-                if seed not in runs:
+                if (method, seed) in self._others:
+                    lines.append(f"- {name}: the results in OUT were made with "
+                                 "other options or photographs")
+                elif seed not in runs:
                     lines.append(f"- {name}: not run")
                 elif runs[seed].failure:
                     lines.append(f"- {name}: {runs[seed].failure}")
@@ -152,6 +158,21 @@ class SetReport:
         link = os.path.relpath(path, self._page).replace(os.sep, "/")
         title = caption.split("**")[1].rstrip(".")
         return f"![{title}]({link})\n\n{caption}\n"
+
+
+def _split(found, benchmark):
+    """The runs that are those of a benchmark, and the names of others."""
+    kept, others = {}, set()
+    for method, runs in found.items():
+        for run in runs:
+            record = run.record
+            if "compare" in record or stereo_run.is_record_of(
+                    record, benchmark.options, benchmark.sources,
+                    benchmark.every):
+                kept.setdefault(method, []).append(run)
+            else:
+                others.add((method, record["seed"]))
+    return kept, others
 
 
 BLOCKS = {"depth": SetReport.depth, "low_texture": SetReport.low_texture,

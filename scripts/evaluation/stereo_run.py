@@ -65,8 +65,19 @@ def size_options(image_size):
 
 def all_options(run):
     """Options of patch_match_stereo with those of the method and the seed."""
-    return ["--PatchMatchStereo.seed", str(run.seed), *METHODS[run.method],
-            *run.options]
+    return _all_options(run.method, run.seed, run.options)
+
+
+def _all_options(method, seed, options):
+    return ["--PatchMatchStereo.seed", str(seed), *METHODS[method], *options]
+
+
+def is_record_of(record, options, sources, every):
+    """Whether a record is of a run with these settings."""
+    return (record["method"] in METHODS
+            and record["options"] == _all_options(record["method"],
+                                                  record["seed"], options)
+            and (record["sources"], record["every"]) == (sources, every))
 
 
 def workspace_command(run):

@@ -4,7 +4,7 @@ import csv
 import dataclasses
 import io
 
-from . import results
+from . import depth_scores, results
 from .methods import label
 
 
@@ -83,13 +83,11 @@ def _score_table(caption, methods, tolerances, find):
          for method in methods for pair in tolerances])
 
 
-_READING = ("In each cell: completeness / accuracy / F1 in per cent{seeds}. ")
-_SEEDS = ", means over seeds, and the smallest and largest F1"
-
-
 def _reading(found):
-    several = any(len(runs) > 1 for runs in found.values())
-    return _READING.format(seeds=_SEEDS if several else "")
+    text = "In each cell: completeness / accuracy / F1 in per cent"
+    if any(len(runs) > 1 for runs in found.values()):
+        text += ", means over seeds, and the smallest and largest F1"
+    return text + "."
 
 
 def depth_table(found, methods, tolerances, bound=None):
@@ -97,9 +95,7 @@ def depth_table(found, methods, tolerances, bound=None):
     pixels = ("all pixels" if bound is None
               else f"pixels of low texture (textureness below {bound:g})")
     return _score_table(
-        f"**Depth maps, {pixels}.** " + _reading(found) + "Completeness: share "
-        "of the measured pixels whose estimate is within the tolerance. "
-        "Accuracy: share of the estimates that are.",
+        f"**Depth maps, {pixels}.** " + _reading(found),
         methods, tolerances,
         lambda method, value, unit: results.depth_score(
             found.get(method), value, unit, bound))
@@ -110,10 +106,7 @@ def cloud_table(found, methods, tolerances, cloud="fused"):
     thresholds = ("COLMAP's own thresholds" if cloud == "fused_default"
                   else "TAPA's thresholds for all methods")
     return _score_table(
-        f"**Points, fused with {thresholds}.** " + _reading(found)
-        + "Completeness: share of the scanned surface with a point within the "
-        "tolerance. Accuracy: share of the points that are so close to the "
-        "scanned surface. Both as ETH3D defines them.",
+        f"**Points, fused with {thresholds}.** " + _reading(found),
         methods, [(value, "m") for value in tolerances],
         lambda method, value, _: results.cloud_score(
             found.get(method), value, cloud))
@@ -131,29 +124,31 @@ def cost_table(found, methods):
             f"{size[0]}x{size[1]}" if size else None,
             results.depth_value(runs, "coverage"),
             results.depth_value(runs, "measurement_coverage"),
+            results.depth_value(runs, "coverage", depth_scores.LOW_TEXTURE),
             results.depth_value(runs, "median_absolute_error"),
             results.depth_value(runs, "median_relative_error"),
             results.cpu_per_megapixel(runs),
             results.step_value(runs, "seconds"),
             results.step_value(runs, "peak_memory_bytes")]
         csv_rows.append([method] + cells)
-        error = cells[5]
+        error = cells[6]
         rows.append([
             label(method), str(cells[0]), str(cells[1] or "-"), cells[2] or "-",
-            percent(cells[3]), percent(cells[4]),
+            percent(cells[3]), percent(cells[4]), percent(cells[5]),
             number(None if error is None else 1000 * error, 1),
-            percent(cells[6], 2), number(cells[7]), number(cells[8]),
-            number(None if cells[9] is None else cells[9] / 1e6)])
+            percent(cells[7], 2), number(cells[8]), number(cells[9]),
+            number(None if cells[10] is None else cells[10] / 1e6)])
     return Table(
         "**What was estimated, and what it took.** Coverage: share of all "
-        "pixels, and of the measured ones, with an estimate. The median error "
-        "is that of the estimates only: a method that estimates more, and more "
-        "difficult, pixels has a larger one. CPU seconds are for both passes "
-        "of stereo, per megapixel and view.",
+        "pixels with an estimate, and of those that were measured or have low "
+        "texture. The median error is that of the estimates only: a method "
+        "that dares more difficult pixels has a larger one. CPU seconds are "
+        "per megapixel and view, for both passes of stereo.",
         ["method", "runs", "views", "size", "coverage %", "of measured %",
-         "median error mm", "median error %", "CPU s / MP", "stereo s",
-         "memory MB"], rows,
+         "of low texture %", "median error mm", "median error %", "CPU s / MP",
+         "stereo s", "memory MB"], rows,
         ["method", "runs", "views", "size", "coverage", "measurement_coverage",
-         "median_absolute_error", "median_relative_error",
+         "low_texture_coverage", "median_absolute_error",
+         "median_relative_error",
          "cpu_seconds_per_megapixel", "stereo_seconds", "peak_memory_bytes"],
         csv_rows)
