@@ -24,7 +24,7 @@ import dataclasses
 import os
 import tomllib
 
-from . import benchmark, files, pictures, report, results
+from . import benchmark, files, pictures, report
 from .processes import Failure
 
 _SET_KEYS = {field.name for field in dataclasses.fields(benchmark.Benchmark)}
@@ -58,8 +58,9 @@ class Plan:
 
     def page_folder(self, out):
         """The plan's folder, or OUT as long as a set has no results at all."""
-        return (self._folder if all(results.load_set(out, name)
-                                    for name in self.sets) else out)
+        return (self._folder
+                if all(report.SetReport(one, out, "", "").found
+                       for one in self.sets.values()) else out)
 
     def write(self, out, bin_dir=None):
         """Writes the page from what is in OUT.

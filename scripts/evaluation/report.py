@@ -24,6 +24,9 @@ GLOSSARY = """\
 class SetReport:
     """Tables, figures and pictures of one set, as Markdown.
 
+    Runs with other options than the benchmark's do not get into it, unless those
+    are None.
+
     Tables go to csv_folder, too, and figures to image_folder; page_folder is
     where the page will stand, which links to them. Every method returns ""
     where there is nothing to show.
@@ -166,9 +169,10 @@ def _split(found, benchmark):
     for method, runs in found.items():
         for run in runs:
             record = run.record
-            if "compare" in record or stereo_run.is_record_of(
-                    record, benchmark.options, benchmark.sources,
-                    benchmark.every):
+            if (benchmark.options is None or "compare" in record
+                    or stereo_run.is_record_of(
+                        record, benchmark.options, benchmark.sources,
+                        benchmark.every)):
                 kept.setdefault(method, []).append(run)
             else:
                 others.add((method, record["seed"]))

@@ -1,0 +1,383 @@
+#!/usr/bin/python3
+"""Runs and their records, with programs that only pretend."""
+
+import glob
+import os
+import signal
+import stat
+import sys
+import tempfile
+import threading
+import time
+import unittest
+
+_ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../..")
+sys.path.insert(0, os.path.join(_ROOT, "scripts"))
+from evaluation import (benchmark, cloud_scores, depth_scores, files,  # noqa: E402
+                        links, machine, processes, stereo_run)
+from evaluation.processes import Failure  # noqa: E402
+
+# Makes a depth map of 4x3 pixels for each photograph, a PLY, or fails if asked.
+_COLMAP = r"""#!/bin/sh
+echo "$@" >> "$(dirname "$0")/calls"
+case "$1" in
+help) echo "COLMAP 3.8 -- Structure"; echo "  (Commit 1234 without CUDA)"; exit ;;
+patch_match_stereo)
+  if [ -e "$(dirname "$0")/fail" ]; then
+    echo "ERROR: no source images"; exit 1
+  fi
+  if [ -e "$(dirname "$0")/slow" ]; then
+    trap 'exit 130' INT TERM; touch "$(dirname "$0")/started"
+    while true; do sleep 0.05; done
+  fi
+  for photo in "$3"/images/*; do
+    printf '4&3&1&' > "$3/stereo/depth_maps/$(basename "$photo").geometric.bin"
+    head -c 48 /dev/zero >> "$3/stereo/depth_maps/$(basename "$photo").geometric.bin"
+  done ;;
+stereo_fusion) echo ply > "$5"; echo vis > "$5.vis" ;;
+esac
+"""
+
+
+def write(path, text="", executable=False):
+    os.makedirs(os.path.dirname(path), exist_ok=True)
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(text)
+    if executable:
+        os.chmod(path, os.stat(path).st_mode | stat.S_IXUSR)
+    return path
+
+
+class TestCase(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="tapa-")
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+        self.addCleanup(setattr, processes, "say", processes.say)
+        processes.say = lambda text: None
+
+    def path(self, *parts):
+        return os.path.join(self.folder, *parts)
+
+
+class StereoRunTest(TestCase):
+    def setUp(self):
+        super().setUp()
+        write(self.path("bin", "colmap"), _COLMAP, True)
+        for name in "abcd":
+            write(self.path("data", "images", name + ".jpg"))
+        write(self.path("data", "sparse", "cameras.txt"))
+
+    def run_of(self, **values):
+        return stereo_run.Run(**{
+            "data": self.path("data"), "folder": self.path("out", "tapa-3"),
+            "set": "data", "method": "tapa", "seed": 3,
+            "options": ["--PatchMatchStereo.num_iterations", "1"],
+            "bin_dir": self.path("bin"), **values})
+
+    def calls(self, command):
+        with open(self.path("bin", "calls"), encoding="utf-8") as file:
+            return [line for line in file if line.startswith(command)]
+
+    def test_everything_is_done_once_and_recorded(self):
+        run = self.run_of()
+        self.assertFalse(stereo_run.is_complete(run))
+        commands = stereo_run.missing_commands(run)
+        self.assertEqual(len(commands), 4)
+        self.assertFalse(os.path.exists(run.folder))
+        record = stereo_run.complete(run)
+        self.assertEqual(record, stereo_run.load_record(run.folder))
+        self.assertTrue(stereo_run.is_complete(run))
+        self.assertEqual(record["done"], ["stereo", "fused", "fused_default"])
+        self.assertEqual(record["options"],
+                         ["--PatchMatchStereo.seed", "3",
+                          "--PatchMatchStereo.tapa", "1",
+                          "--PatchMatchStereo.num_iterations", "1"])
+        self.assertEqual((record["views"], record["image_size"]), (4, [4, 3]))
+        self.assertTrue(record["version"].startswith(
+            "COLMAP 3.8 (Commit 1234 without CUDA)"), record["version"])
+        self.assertGreater(record["machine"]["cores"], 0)
+        for step in record["done"]:
+            self.assertGreater(record["seconds"][step], 0)
+            self.assertGreater(record["peak_memory_bytes"][step], 1e5)
+        self.assertAlmostEqual(
+            stereo_run.total(record),
+            record["seconds"]["stereo"] + record["seconds"]["fused"])
+        self.assertTrue(os.path.exists(run.path("fused.ply.vis")))
+        self.assertEqual(glob.glob(run.path("*.new*")), [])
+        self.assertIn("--StereoFusion.max_reproj_error 1 "
+                      "--StereoFusion.max_normal_error 20",
+                      self.calls("stereo_fusion")[0])
+        self.assertNotIn("max_reproj_error", self.calls("stereo_fusion")[1])
+        # Again: nothing is left to do.
+        self.assertEqual(stereo_run.missing_commands(run), [])
+        stereo_run.complete(run)
+        self.assertEqual(len(self.calls("patch_match_stereo")), 1)
+        self.assertEqual(len(self.calls("stereo_fusion")), 2)
+        # A cloud that is gone is made anew.
+        os.remove(run.path("fused.ply"))
+        self.assertEqual(stereo_run.complete(run)["done"], record["done"])
+        self.assertEqual(len(self.calls("stereo_fusion")), 3)
+
+    def test_a_failure_is_recorded_and_forgotten_when_it_is_over(self):
+        write(self.path("bin", "fail"))
+        run = self.run_of()
+        with self.assertRaisesRegex(Failure, "patch_match_stereo: no source"):
+            stereo_run.complete(run)
+        record = stereo_run.load_record(run.folder)
+        self.assertEqual(record["failed"]["step"], "stereo")
+        self.assertIn("no source images", record["failed"]["message"])
+        before = record["seconds"]["stereo"]
+        self.assertGreater(before, 0)
+        os.remove(self.path("bin", "fail"))
+        record = stereo_run.complete(run)
+        self.assertIsNone(record["failed"])
+        self.assertGreater(record["seconds"]["stereo"], before)
+
+    def test_other_settings_are_refused(self):
+        stereo_run.complete(self.run_of())
+        for values, part in (({"options": []}, "options"), ({"every": 2}, "every"),
+                             ({"sources": 3}, "sources")):
+            with self.assertRaisesRegex(Failure, f"made with {part}"):
+                stereo_run.complete(self.run_of(**values))
+
+    def test_times_of_a_finished_workspace_are_unknown(self):
+        run = self.run_of()
+        stereo_run.complete(run)
+        os.remove(run.path("record.json"))
+        os.remove(run.path("fused_default.ply"))
+        record = stereo_run.complete(run)
+        self.assertIsNone(record["seconds"]["stereo"])
+        self.assertIsNone(record["cpu_seconds"]["fused"])
+        self.assertIsNone(record["peak_memory_bytes"]["stereo"])
+        self.assertGreater(record["seconds"]["fused_default"], 0)
+        self.assertIsNone(stereo_run.total(record))
+        self.assertEqual(record["views"], 4)
+
+    def test_maps_of_other_photographs_are_refused(self):
+        run = self.run_of()
+        stereo_run.complete(run)
+        os.remove(run.path("record.json"))
+        config = run.path("stereo", "patch-match.cfg")
+        with open(config, encoding="utf-8") as file:
+            before = file.read()
+        with self.assertRaisesRegex(Failure, "maps of other photographs"):
+            stereo_run.complete(self.run_of(every=2))
+        with open(config, encoding="utf-8") as file:
+            self.assertEqual(file.read(), before)
+
+    def test_a_stop_is_handed_on_and_its_time_counts(self):
+        write(self.path("bin", "slow"))
+        run = self.run_of()
+
+        def stop():
+            while not os.path.exists(self.path("bin", "started")):
+                time.sleep(0.02)
+            os.kill(os.getpid(), signal.SIGINT)
+
+        thread = threading.Thread(target=stop)
+        thread.start()
+        with self.assertRaises(processes.Interrupted) as caught:
+            stereo_run.complete(run)
+        thread.join()
+        self.assertEqual(caught.exception.number, signal.SIGINT)
+        before = stereo_run.load_record(run.folder)["seconds"]["stereo"]
+        self.assertGreater(before, 0)
+        os.remove(self.path("bin", "slow"))
+        record = stereo_run.complete(run)
+        self.assertGreater(record["seconds"]["stereo"], before)
+
+    def test_time_of_a_part_that_was_killed_is_unknown(self):
+        run = self.run_of()
+        stereo_run.complete(run)
+        record = stereo_run.load_record(run.folder)
+        # As it stands while a program runs.
+        record["done"] = []
+        record["seconds"] = {"stereo": None}
+        files.write_json(run.path("record.json"), record)
+        self.assertIsNone(stereo_run.complete(run)["seconds"]["stereo"])
+
+    def test_missing_programs_and_broken_records(self):
+        with self.assertRaisesRegex(Failure, "has no colmap; run scripts/build"):
+            stereo_run.complete(self.run_of(bin_dir=self.path("none")))
+        write(self.path("out", "tapa-3", "record.json"), "{")
+        with self.assertRaisesRegex(Failure, "record.json cannot be read"):
+            stereo_run.complete(self.run_of())
+        os.remove(self.path("out", "tapa-3", "record.json"))
+        with self.assertRaisesRegex(Failure, "make_workspace.sh: .*no folder images"):
+            stereo_run.complete(self.run_of(data=self.path("bin")))
+
+
+class ProcessesTest(TestCase):
+    def test_what_a_program_takes(self):
+        usage = processes.run(
+            [sys.executable, "-c", "x = bytearray(50_000_000); sum(range(10**6))"],
+            self.path("log"))
+        self.assertGreater(usage.cpu_seconds, 0)
+        self.assertGreater(usage.peak_memory_bytes, 50e6)
+
+    def test_failures_are_one_line(self):
+        for script, text in (
+                ("echo x; echo 'ERROR: bad'; echo more; exit 3", "sh: bad "),
+                ("echo some words; exit 1", "sh: some words "),
+                ("kill -KILL $$", "sh was ended by SIGKILL")):
+            with self.assertRaises(processes.ProgramFailed) as caught:
+                processes.run(["sh", "-c", script], self.path("log"))
+            self.assertIn(text, str(caught.exception))
+            self.assertNotIn("\n", str(caught.exception))
+            self.assertGreater(caught.exception.usage.seconds, 0)
+        with self.assertRaisesRegex(Failure, "cannot be started"):
+            processes.run([self.path("none")], self.path("log"))
+
+
+class CloudScoresTest(TestCase):
+    OUTPUT = ("Loading reconstruction: x\nTolerances: 0.01 0.02\n"
+              "Completenesses: 0.25 0.5\nAccuracies: 0.5 1\n"
+              "F1-scores: 0.333333 0.666667\n")
+
+    def evaluator(self, output, code=0):
+        write(self.path("output"), output)
+        return write(self.path("evaluator"), "#!/bin/sh\n"
+                     f"echo \"$@\" >> '{self.path('calls')}'\n"
+                     f"cat '{self.path('output')}'\nexit {code}\n", True)
+
+    def test_scores_are_kept(self):
+        evaluator = self.evaluator(self.OUTPUT)
+        for _ in range(2):
+            scores = cloud_scores.score(
+                self.folder, ["fused"], "scans.mlp", evaluator, [0.01, 0.02],
+                ["--voxel_size", "0.1"])
+            self.assertEqual(scores["fused"]["f1"], [0.333333, 0.666667])
+        self.assertEqual(cloud_scores.load(self.folder), scores)
+        self.assertEqual(cloud_scores.at(scores["fused"], 0.02), {
+            "completeness": 0.5, "accuracy": 1, "f1": 0.666667})
+        self.assertIsNone(cloud_scores.at(scores["fused"], 0.5))
+        with open(self.path("calls"), encoding="utf-8") as file:
+            calls = file.read().splitlines()
+        self.assertEqual(calls, [
+            "--tolerances 0.01,0.02 --reconstruction_ply_path "
+            f"{self.path('fused.ply')} --ground_truth_mlp_path scans.mlp "
+            "--voxel_size 0.1"])
+        # Another tolerance needs another run.
+        cloud_scores.score(self.folder, ["fused"], "scans.mlp", evaluator,
+                           [0.01, 0.05])
+        with open(self.path("calls"), encoding="utf-8") as file:
+            self.assertEqual(len(file.read().splitlines()), 2)
+
+    def test_output_that_is_no_score(self):
+        for output, code, text in (
+                ("Tolerances: 0.01\n", 0, "no line Completenesses"),
+                (self.OUTPUT.replace("0.5 1", "0.5"), 0, "different length"),
+                (self.OUTPUT.replace("0.5 1", "x y"), 0, "no numbers behind Acc"),
+                ("ERROR: no vertices in fused.ply\n", 1, "no vertices")):
+            with self.assertRaisesRegex(Failure, text):
+                cloud_scores.score(self.folder, ["fused"], "scans.mlp",
+                                   self.evaluator(output, code))
+        self.assertEqual(cloud_scores.load(self.folder), {})
+
+
+class DepthScoresTest(TestCase):
+    def evaluator(self):
+        script = ("#!/bin/sh\necho call >> " + self.path("calls") + "\n"
+                  "while [ $# -gt 0 ]; do [ $1 = --json ] && out=$2; shift; done\n"
+                  "cp " + self.path("result") + " $out\n")
+        return write(self.path("bin", "evaluate_depth_maps"), script, True)
+
+    def scores(self, tolerances, bounds):
+        part = {"tolerances": [
+            {"tolerance": value, "unit": unit, "completeness": 0.5,
+             "accuracy": 0.5, "f1": 0.5} for value, unit in tolerances]}
+        return {"overall": part, "images": [], "by_textureness": [
+            {"max_textureness": bound, "score": part} for bound in bounds]}
+
+    def test_scored_again_only_for_other_tolerances(self):
+        self.evaluator()
+        files.write_json(self.path("result"), self.scores(
+            [(0.01, "m"), (1, "%")], [0.75]))
+        options = {"tolerances": [0.01], "relative_tolerances": [1],
+                   "textureness": [0.75], "bin_dir": self.path("bin")}
+        for _ in range(2):
+            scores = depth_scores.score(self.folder, "gt", **options)
+        with open(self.path("calls"), encoding="utf-8") as file:
+            self.assertEqual(file.read(), "call\n")
+        self.assertEqual(depth_scores.at(scores["overall"], 1, "%")["f1"], 0.5)
+        self.assertIsNone(depth_scores.at(scores["overall"], 1, "m"))
+        self.assertIsNotNone(depth_scores.below(scores, 0.75))
+        self.assertIsNone(depth_scores.below(scores, 0.8))
+        depth_scores.score(self.folder, "gt", **{**options, "tolerances": [1]})
+        with open(self.path("calls"), encoding="utf-8") as file:
+            self.assertEqual(file.read(), "call\ncall\n")
+
+
+class LinksTest(TestCase):
+    def setUp(self):
+        super().setUp()
+        for name in ("b.jpg", "a.jpg", "rig/c.jpg"):
+            write(self.path("data", "images", name))
+
+    def test_photographs_are_those_of_make_workspace(self):
+        data = self.path("data")
+        self.assertEqual(links.photographs(data), ["a.jpg", "b.jpg", "rig/c.jpg"])
+        self.assertEqual(links.photographs(data, 2), ["a.jpg", "rig/c.jpg"])
+
+    def test_maps_of_all_names(self):
+        data, names = self.path("data"), links.photographs(self.path("data"))
+        for maps, file in (("w", "w/stereo/depth_maps/a.jpg.geometric.bin"),
+                           ("p", "p/a.jpg.photometric.bin"),
+                           ("q", "q/rig/c.jpg.bin")):
+            write(self.path(file), maps)
+            out = self.path("out_" + maps)
+            self.assertEqual(links.make_view_workspace(
+                data, self.path(maps), out, names), 1)
+            found = [path for path in (os.path.join(
+                out, "stereo/depth_maps", name + ".geometric.bin")
+                for name in names) if os.path.exists(path)]
+            self.assertEqual(len(found), 1)
+            with open(found[0], encoding="utf-8") as content:
+                self.assertEqual(content.read(), maps)
+            self.assertTrue(os.path.exists(os.path.join(out, "images/rig/c.jpg")))
+        with self.assertRaisesRegex(Failure, "no depth map of a.jpg"):
+            links.make_view_workspace(data, self.path("data"), self.path("x"),
+                                      names)
+
+
+class BenchmarkCheckTest(TestCase):
+    def test_bad_data_and_comparisons(self):
+        data = self.path("data")
+        one = benchmark.Benchmark("data", data)
+        for part, text in (("images/a.jpg", "no folder images"),
+                           ("sparse/x", "no folder sparse"),
+                           ("gt_depth/a.png", "neither gt_depth/ nor a MeshLab")):
+            with self.assertRaisesRegex(Failure, text):
+                benchmark.check(one)
+            write(os.path.join(data, part))
+        benchmark.check(one)
+        one.views = ["b.jpg"]
+        with self.assertRaisesRegex(Failure, "no photograph b.jpg"):
+            benchmark.check(one)
+        for name, path, text in (("tapa", data, "under this name"),
+                                 ("a/b", data, "under this name"),
+                                 ("x", self.path("none"), "there is no"),
+                                 ("x", write(self.path("f.txt")), "neither")):
+            with self.assertRaisesRegex(Failure, text):
+                benchmark.check_comparison(name, path)
+
+    def test_the_command_of_a_benchmark(self):
+        self.assertEqual(
+            benchmark.command_text(benchmark.Benchmark(
+                "x", "/somewhere/fountain", methods=["plain"], seeds=[0, 2],
+                every=4, tolerances=[0.5], options=["--a", "1"])),
+            "scripts/benchmark DATA/fountain --out OUT --methods plain --seeds 0,2 "
+            "--every 4 --tolerances 0.5 -- --a 1")
+
+
+class MachineTest(unittest.TestCase):
+    def test_this_machine(self):
+        found = machine.describe()
+        self.assertEqual(found["cores"], len(os.sched_getaffinity(0)))
+        self.assertGreater(found["memory_bytes"], 1e8)
+        self.assertIsNone(found["gpu"])
+
+
+if __name__ == "__main__":
+    unittest.main()
