@@ -1,7 +1,7 @@
 """From a scene of ETH3D, as its archives unpack, to a set of this project.
 
 A set (see examples/room/README.md) has images/ and sparse/, here links to the scene's
-undistorted photographs and their model, gt_scans/, a link to its laser scans, and
+undistorted photographs and their model, scans/, a link to its laser scans, and
 gt_depth/. ETH3D's depth maps belong to the photographs as they were taken, with the
 lens's distortion. They are sampled at the rays of the undistorted photographs' pixels;
 the depth z of a point does not depend on the distortion.
@@ -139,14 +139,15 @@ def prepare(scene, scene_path, out, depth_size=2000):
     scans = os.path.join(scene_path, f"{scene.track.tag}_scan_eval")
     if os.path.isdir(scans) and not os.path.isfile(os.path.join(scans, "scan_alignment.mlp")):
         raise Failure(f"{scans} has no scan_alignment.mlp; unpack the scans again")
-    _check_depth_size(out, depth_size)
+    if depth_folder(scene_path, scene):
+        _check_depth_size(out, depth_size)
 
     for view in views:
         _link(os.path.join(scene_path, "images", view.name), os.path.join(out, "images", view.name))
     for name in MODEL_FILES:
         _link(os.path.join(calibration, name), os.path.join(out, "sparse", name))
     if os.path.isdir(scans):
-        _link(scans, os.path.join(out, "gt_scans"))
+        _link(scans, os.path.join(out, "scans"))
     content = {"scene": scene.name, "resolution": scene.resolution, "split": scene.split,
                "photographs": len(views), "scans": os.path.isdir(scans),
                "depth_maps": _prepare_depth(scene_path, scene, views, out, depth_size),

@@ -3,6 +3,7 @@
 A server on this machine stands in for the benchmark's site.
 """
 
+import csv
 import http.server
 import json
 import os
@@ -268,7 +269,7 @@ class Prepare(Case):
         os.rename(self.folder, moved)
         self.addCleanup(shutil.rmtree, moved, True)
         for name in ("images/dslr_images_undistorted/DSC_0101.JPG", "sparse/points3D.txt",
-                     "gt_scans/scan_alignment.mlp"):
+                     "scans/scan_alignment.mlp"):
             self.assertTrue(os.path.isfile(os.path.join(moved, "sets/attic_dslr", name)), name)
         # The photographs as taken do not take part.
         self.assertEqual(os.listdir(os.path.join(moved, "sets/attic_dslr/images")),
@@ -465,7 +466,7 @@ class Pipeline(Case):
             calls = file.read().splitlines()
         self.assertEqual(len(calls), 8)
         self.assertIn("--tolerances 0.01,0.02,0.05,0.1,0.2,0.5", calls[0])
-        self.assertIn("gt_scans/scan_alignment.mlp", calls[0])
+        self.assertIn("scans/scan_alignment.mlp", calls[0])
         for name in ("office_dslr", "office_rig"):
             for method in ("plain", "tapa"):
                 path = self.run_path(name, method, "cloud_scores.json")
@@ -510,7 +511,46 @@ class Pipeline(Case):
         self.assertFalse(os.path.exists(
             self.path("submission", "paper-144", "high_res_multi_view.7z")))
 
-    def test_6_a_scene_that_fails_does_not_stop_the_others(self):
+    def test_6_report(self):
+        result = self.eth3d("report", "--resolution", "both", *METHODS)
+        self.assert_done(result)
+        folder = self.path("report", "144")
+        with open(os.path.join(folder, "report.md"), encoding="utf-8") as file:
+            text = file.read()
+        pages = [text]
+        for name in ("office_dslr.md", "office_rig.md"):
+            self.assertIn(f"({name})", text)
+            with open(os.path.join(folder, name), encoding="utf-8") as file:
+                pages.append(file.read())
+        for page in pages:
+            links = re.findall(r"\]\(([^)]*)\)", page)
+            self.assertGreater(len(links), 2)
+            for link in links:
+                self.assertTrue(os.path.isfile(os.path.join(folder, link)), link)
+        # A photograph with the maps of both methods.
+        self.assertIn("**dslr_images_undistorted/DSC_", pages[1])
+        # All other scenes of ETH3D have not been run: no mean over them.
+        rows = self.read_csv(os.path.join(folder, "tables", "table1.csv"))
+        own = [row for row in rows if row["figures"] == "own"]
+        self.assertGreater(len(own), 2)
+        for row in own:
+            self.assertEqual({row["training high-res"], row["training"], row["test"]}, {""})
+        self.assertEqual(sum(row["figures"] == "published" for row in rows), 6)
+        # The mean over this one scene is the scene's score.
+        rows = self.read_csv(os.path.join(folder, "tables", "table2_paper_fused.csv"))
+        own = {(row["method"], float(row["tolerance"])): row for row in rows
+               if row["figures"] == "own"}
+        scores = self.read_json(self.run_path("office_dslr", "plain", "cloud_scores.json"))
+        for i, tolerance in enumerate(scores["fused"]["tolerances"]):
+            self.assertAlmostEqual(float(own["plain", tolerance]["f1"]),
+                                   scores["fused"]["f1"][i])
+        self.assertEqual(own["paper", 0.02]["f1"], "")
+
+    def read_csv(self, path):
+        with open(path, encoding="utf-8", newline="") as file:
+            return list(csv.DictReader(file))
+
+    def test_7_a_scene_that_fails_does_not_stop_the_others(self):
         result = run_script("miniature_eth3d.py", self.path("scenes"), "--scene", "broken",
                             "--image_size", "96", "--views", "3")
         self.assert_done(result)
@@ -529,7 +569,7 @@ class Pipeline(Case):
         self.assert_failed(result, "it is not complete", "scripts/eth3d run")
         shutil.rmtree(self.path("sets", "broken_dslr"))
 
-    def test_7_wrong_words(self):
+    def test_8_wrong_words(self):
         for words, text in ((("run", "--methods", "plane"), "no method plane"),
                             (("run", "--scenes", "attic"), "no scene attic"),
                             (("evaluate", "--eth3d_evaluator", "/nowhere"), "is no program"),
@@ -537,7 +577,7 @@ class Pipeline(Case):
             with self.subTest(words=words):
                 self.assert_failed(self.eth3d(*words), text)
 
-    def test_8_other_options_are_not_mixed(self):
+    def test_9_other_options_are_not_mixed(self):
         result = run_script("eth3d", "run", self.folder, "--methods", "tapa", "--scenes",
                             "office", *FAST, "--PatchMatchStereo.filter", "0")
         self.assert_failed(result, "office_dslr/tapa-0", "was made with options")
