@@ -1,7 +1,8 @@
 """The methods that are compared, as options of the program."""
 
 _TAPA = ["--PatchMatchStereo.tapa", "1"]
-_PAPER = _TAPA + ["--PatchMatchStereo.tapa_completion", "0"]
+_PAPER = _TAPA + ["--PatchMatchStereo.tapa_completion", "0",
+                  "--PatchMatchStereo.tapa_min_textureness", "0.5"]
 
 
 def _without(part):

@@ -38,8 +38,8 @@ struct HostOptions {
 
   // Variance of intensities (0 to 1) that counts as little texture.
   double tapa_textureness_variance = 0.00005;
-  // Textureness of a flat patch, above 0 and at most 1.
-  double tapa_min_textureness = 0.5;
+  // Textureness of a flat patch, above 0 and at most 1. The paper's is 0.5.
+  double tapa_min_textureness = 0.1;
   // By how much textureness changes the weights, 0 to 1.
   double tapa_weight_range = 0.2;
 
@@ -71,7 +71,7 @@ struct HostOptions {
   // What is nearby: half size of a square, as a share of the image's width.
   double tapa_completion_radius = 0.1;
   // Below this textureness planes replace estimates of little support, too.
-  double tapa_completion_textureness = 0.75;
+  double tapa_completion_textureness = 0.5;
   // Share of a window's pixels that have to speak for a fill, 0 to 1.
   double tapa_completion_fill_share = 0.5;
 
@@ -114,7 +114,8 @@ struct HostOptions {
     visit(S("tapa_textureness_variance"), &options->tapa_textureness_variance,
           S("Variance of intensities (0 to 1) that counts as little texture"));
     visit(S("tapa_min_textureness"), &options->tapa_min_textureness,
-          S("Textureness of a flat patch, above 0 and at most 1"));
+          S("Textureness of a flat patch, above 0 and at most 1; the paper's "
+            "is 0.5"));
     visit(S("tapa_weight_range"), &options->tapa_weight_range,
           S("By how much textureness changes the weights, 0 to 1"));
     visit(S("tapa_fine_divisor"), &options->tapa_fine_divisor,

@@ -24,8 +24,10 @@ struct TapaOptions {
 
   // Variance of intensities (0 to 1) that counts as little texture.
   double textureness_variance = 0.00005;
-  // Textureness of a flat patch, above 0 and at most 1.
-  double min_textureness = 0.5;
+  // Textureness t of a flat patch, above 0 and at most 1. Where t is below 0.5
+  // the weights favour planes. The paper's value is 0.5, with which they never
+  // do (docs/tapa.md).
+  double min_textureness = 0.1;
   // By how much textureness changes the weights: w+ = 1 - range (1 - t),
   // w- = 1 - range t. 0 to 1.
   double weight_range = 0.2;
@@ -60,7 +62,7 @@ struct TapaOptions {
   double completion_radius = 0.1;
   // Below this textureness planes replace estimates that are supported but not
   // by that number of views, too.
-  double completion_textureness = 0.75;
+  double completion_textureness = 0.5;
   // Share of a window's pixels that have to speak for the fill of a missing
   // one, 0 to 1. Without completion any will do, as in the paper.
   double completion_fill_share = 0.5;

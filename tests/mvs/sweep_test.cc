@@ -386,6 +386,27 @@ INSTANTIATE_TEST_SUITE_P(
              std::to_string(info.param.index);
     });
 
+// Section 4.2: "regions with low texture" are to favour planes.
+TEST(TextureWeights, DefaultsFavourPlanesWhereThereIsLittleTexture) {
+  const TapaOptions options;
+  const auto weights = [&options](double variance) {
+    const double e = options.textureness_variance;
+    return TextureWeights::FromTextureness(
+        static_cast<float>((variance + e) /
+                           (variance + e / options.min_textureness)),
+        static_cast<float>(options.weight_range));
+  };
+  // Standard deviations of 0, 2 and 4 grey levels against 8 and 50.
+  for (const double deviation : {0.0, 2.0, 4.0}) {
+    const TextureWeights little = weights(std::pow(deviation / 255, 2));
+    EXPECT_LT(little.planar.photometric, little.own.photometric);
+  }
+  for (const double deviation : {8.0, 50.0}) {
+    const TextureWeights much = weights(std::pow(deviation / 255, 2));
+    EXPECT_GT(much.planar.photometric, much.own.photometric);
+  }
+}
+
 TEST(TextureWeights, AreThoseOfThePaper) {
   for (const double range : {0.0, 0.1, 0.2, 0.5, 1.0}) {
     for (const double t : {0.5, 0.5 + 1e-6, 0.6, 0.75, 0.9, 1.0, 0.0, 0.3}) {
@@ -494,8 +515,9 @@ TEST(Sweep, RangeOfDepthsIncludesItsEnds) {
   }
 }
 
-// Where nothing can be measured every hypothesis costs the same, and the planes
-// win: the coarse one, or the fine one where there is no other.
+// Where nothing can be measured the planes win: the coarse one, or the fine one
+// where there is no other. Without weights, and with those of the paper, every
+// hypothesis costs the same there; with the default ones planes cost less.
 void ExpectPlanesToWinOnAFlatPatch(bool geometric) {
   SyntheticOptions scene_options;
   scene_options.num_sources = 7;
@@ -513,10 +535,12 @@ void ExpectPlanesToWinOnAFlatPatch(bool geometric) {
   options.geom_consistency = geometric;
   const ProblemData data(options, problem);
   SweepScratch scratch(data);
-  for (const bool weighted : {false, true}) {
+  // 0: no weights.
+  for (const double min_textureness :
+       {0.0, 0.5, TapaOptions().min_textureness}) {
     for (const int index : {0, 1, 6, 11}) {
       SCOPED_TRACE(testing::Message()
-                   << (weighted ? "weighted" : "plain") << ", sweep " << index);
+                   << "textureness " << min_textureness << ", sweep " << index);
       std::mt19937 random(index);
       SweepGuide guide = MakeGuide(scene, &random);
       const Vec3 n = scene.normal();
@@ -524,7 +548,13 @@ void ExpectPlanesToWinOnAFlatPatch(bool geometric) {
                                 40, &random);
       guide.coarse = DrawAtRandom({PlaneThrough(4, n), PlaneThrough(4.5f, n)},
                                   48, 40, &random);
-      guide.textureness = weighted ? ComputeTextureness(flat) : Map<float>();
+      if (min_textureness > 0) {
+        TexturenessOptions texture;
+        texture.min_textureness = min_textureness;
+        guide.textureness = ComputeTextureness(flat, texture);
+      } else {
+        guide.textureness = Map<float>();
+      }
       SweepState state = MakeState(data, depth, normal, &scratch);
       RunSweep(data, MakeParams(options, index), guide, &state, &scratch);
 
