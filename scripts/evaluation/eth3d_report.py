@@ -3,7 +3,7 @@
 import os
 
 from . import (benchmark, eth3d_scenes, eth3d_tables, figures, files, links,
-               pictures, published, report, results)
+               published, report, results)
 from .methods import ABLATION, TAPA_ABLATION
 
 _TOLERANCES = published.TABLE2_TOLERANCES
@@ -89,7 +89,7 @@ def _figures(folder, scenes, found, methods):
     for name, draw in (("errors", figures.draw_errors),
                        ("textureness", figures.draw_textureness)):
         caption = draw(os.path.join(folder, "figures", name + ".png"), pooled,
-                       pictures.chosen_methods(methods), title)
+                       figures.chosen_methods(methods), title)
         if caption:
             parts.append(f"![{name}](figures/{name}.png)\n\n{caption}\n")
     return parts

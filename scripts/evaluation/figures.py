@@ -8,7 +8,7 @@ written. found: what results.load_set() returns.
 import os
 
 from . import depth_scores, results
-from .methods import label
+from .methods import METHODS, label
 from .processes import Failure
 
 # Colours that colour-blind readers can tell apart (Okabe and Ito), and markers.
@@ -19,6 +19,12 @@ _STYLES = [("#0072B2", "o"), ("#D55E00", "^"), ("#009E73", "s"),
 # Metres.
 ERRORS = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5]
 TEXTURENESS_ERRORS = [0.1, 0.2, 0.5]
+
+
+def chosen_methods(methods):
+    """Those that figures show: not the ones that leave parts of TAPA out."""
+    return [method for method in methods
+            if method not in METHODS or "-" not in method] or methods
 
 
 def _pyplot():
@@ -41,7 +47,7 @@ def save(figure, path):
     os.makedirs(os.path.dirname(path) or ".", exist_ok=True)
     kind = os.path.splitext(path)[1][1:]
     metadata = {"Date": None} if kind == "svg" else {}
-    figure.savefig(path + ".new", format=kind, dpi=150, bbox_inches="tight",
+    figure.savefig(path + ".new", format=kind, dpi=110, bbox_inches="tight",
                    metadata=metadata)
     os.replace(path + ".new", path)
     _pyplot().close(figure)

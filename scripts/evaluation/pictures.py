@@ -6,8 +6,8 @@ import shutil
 from . import links, machine, processes
 from .methods import METHODS, label
 
-_WIDTH = 900
-_QUALITY = 78
+_WIDTH = 800
+_QUALITY = 75
 
 
 def _stem(name):
@@ -99,9 +99,10 @@ def draw_comparison(output, data, found, methods, view, bin_dir=None):
 
 
 def chosen_methods(methods):
-    """Those that pictures show: not the ones that leave parts of TAPA out."""
-    return [method for method in methods
-            if method not in METHODS or "-" not in method] or methods[:2]
+    """Those that pictures show: without and with TAPA, and other tools."""
+    chosen = [method for method in methods
+              if method in ("plain", "tapa") or method not in METHODS]
+    return chosen or methods[:2]
 
 
 def choose_views(data, every, count):

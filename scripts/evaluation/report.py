@@ -5,6 +5,7 @@ import os
 from . import (depth_scores, eth3d_tables, figures, files, pictures, results,
                stereo_run, tables)
 from .methods import ABLATION, TAPA_ABLATION
+from .processes import Failure
 
 GLOSSARY = """\
 - **Completeness**: share of what was measured that is reconstructed within the
@@ -95,9 +96,13 @@ class SetReport:
         for view in self.benchmark.views:
             stem = os.path.splitext(view)[0].replace(os.sep, "_")
             path = self._image(f"{stem}.jpg")
-            caption = pictures.draw_comparison(
-                path, self.benchmark.data, self.found, self._methods, view,
-                self._bin_dir)
+            try:
+                caption = pictures.draw_comparison(
+                    path, self.benchmark.data, self.found, self._methods, view,
+                    self._bin_dir)
+            except Failure as error:
+                text.append(f"*There is no picture of {view}: {error}*\n")
+                continue
             if caption:
                 text.append(self._embed(path, caption))
         return "\n".join(text)
@@ -131,7 +136,7 @@ class SetReport:
                     lines.append(f"- {name}: {runs[seed].failure}")
                 elif "stereo" not in runs[seed].record["done"]:
                     lines.append(f"- {name}: not finished")
-        for method, _ in self.benchmark.compare:
+        for method in dict(self.benchmark.compare):
             for run in self.found.get(method, []):
                 if run.failure:
                     lines.append(f"- {self.benchmark.name}: {method}: "
@@ -154,7 +159,9 @@ class SetReport:
 
     def _figure(self, name, draw):
         path = self._image(name + ".png")
-        caption = draw(path, self.found, self._methods, self.benchmark.name)
+        caption = draw(path, self.found,
+                       figures.chosen_methods(self._methods),
+                       self.benchmark.name)
         return self._embed(path, caption) if caption else ""
 
     def _embed(self, path, caption):

@@ -11,8 +11,8 @@ import unittest
 _ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../..")
 sys.path.insert(0, os.path.join(_ROOT, "scripts"))
 from evaluation import (benchmark, eth3d_report, eth3d_scenes,  # noqa: E402
-                        eth3d_tables, figures, files, plan, published, report,
-                        results, tables)
+                        eth3d_tables, figures, files, pictures, plan,
+                        published, report, results, tables)
 from evaluation.methods import LABELS, METHODS, TAPA_ABLATION  # noqa: E402
 from evaluation.processes import Failure  # noqa: E402
 
@@ -229,6 +229,15 @@ class FiguresTest(TestCase):
                          [(0.6, 0.3), (1, 0.5)])
         self.assertTrue(all(share is None for _, share in
                             figures.textureness_points(None, 0.1)))
+
+    def test_which_methods_are_drawn(self):
+        methods = ["plain", "tapa", "tapa-fine", "paper", "other-tool"]
+        self.assertEqual(figures.chosen_methods(methods),
+                         ["plain", "tapa", "paper", "other-tool"])
+        self.assertEqual(pictures.chosen_methods(methods),
+                         ["plain", "tapa", "other-tool"])
+        self.assertEqual(figures.chosen_methods(["tapa-fine"]), ["tapa-fine"])
+        self.assertEqual(pictures.chosen_methods(["paper"]), ["paper"])
 
     def test_files(self):
         for draw in (figures.draw_errors, figures.draw_textureness):
