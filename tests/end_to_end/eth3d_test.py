@@ -19,7 +19,6 @@ import tiny_workspace as tiny
 
 SCRIPTS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../scripts")
 BIN_DIR = os.path.dirname(os.path.abspath(tiny.COLMAP))
-EVALUATOR = os.path.join(BIN_DIR, "evaluate_point_cloud")
 # Enough for points that can be scored, and fast.
 FAST = ["--image_sizes", "144", "--", "--PatchMatchStereo.num_iterations", "2",
         "--PatchMatchStereo.window_radius", "3", "--PatchMatchStereo.num_samples", "6"]
@@ -477,7 +476,6 @@ class Pipeline(Case):
                 self.assertEqual(depth["overall"]["num_maps"], 4)
                 self.assertGreater(depth["overall"]["num_measurements"], 1000)
 
-    @unittest.skipUnless(os.path.exists(EVALUATOR), "evaluate_point_cloud is not built")
     def test_4_scores(self):
         self.assert_done(self.eth3d("evaluate", *METHODS))
         for method in ("plain", "tapa"):
@@ -572,6 +570,7 @@ class Pipeline(Case):
     def test_8_wrong_words(self):
         for words, text in ((("run", "--methods", "plane"), "no method plane"),
                             (("run", "--scenes", "attic"), "no scene attic"),
+                            (("run", "--seeds", "one"), "'one' is no list"),
                             (("evaluate", "--eth3d_evaluator", "/nowhere"), "is no program"),
                             (("submit", "--method", "plane"), "no method plane")):
             with self.subTest(words=words):

@@ -40,7 +40,8 @@ class Scenes(unittest.TestCase):
         self.assertEqual(len({scene.set_name for scene in everything}), 35)
 
     def test_archives(self):
-        scenes = eth3d_scenes.select(eth3d_scenes.all_scenes(), "both", "both", ["office", "tunnel"])
+        scenes = eth3d_scenes.select(eth3d_scenes.all_scenes(), "both", "both",
+                                     ["office", "tunnel"])
         self.assertEqual([scene.archives() for scene in scenes], [
             ["office_dslr_undistorted.7z", "office_dslr_scan_eval.7z", "office_dslr_jpg.7z",
              "office_dslr_depth.7z"], ["tunnel_rig_undistorted.7z"]])
