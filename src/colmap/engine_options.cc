@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "src/colmap/failure.h"
+#include "src/files/failure.h"
 
 namespace tapa {
 namespace {

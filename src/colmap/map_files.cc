@@ -8,8 +8,8 @@
 #include <cstring>
 #include <fstream>
 
-#include "src/colmap/atomic_file.h"
-#include "src/colmap/failure.h"
+#include "src/files/atomic_file.h"
+#include "src/files/failure.h"
 
 // Values are copied as they stand in memory.
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__,

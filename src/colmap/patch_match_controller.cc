@@ -8,10 +8,10 @@
 #include <thread>
 
 #include "mvs/patch_match.h"
-#include "src/colmap/failure.h"
 #include "src/colmap/interrupt.h"
 #include "src/colmap/option_list.h"
 #include "src/colmap/stereo_run.h"
+#include "src/files/failure.h"
 #include "util/misc.h"
 
 namespace colmap {

@@ -6,7 +6,7 @@
 #include <unordered_map>
 #include <unordered_set>
 
-#include "src/colmap/failure.h"
+#include "src/files/failure.h"
 #include "util/math.h"
 
 namespace tapa {

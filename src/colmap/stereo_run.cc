@@ -12,9 +12,9 @@
 
 #include "src/colmap/consistency_graph.h"
 #include "src/colmap/engine_options.h"
-#include "src/colmap/failure.h"
 #include "src/colmap/map_files.h"
 #include "src/colmap/tapa_debug.h"
+#include "src/files/failure.h"
 #include "src/mvs/estimate_depth.h"
 #include "src/mvs/tapa/stages.h"
 #include "util/misc.h"

@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "mvs/image.h"
-#include "src/colmap/failure.h"
+#include "src/files/failure.h"
 #include "util/bitmap.h"
 
 namespace tapa {

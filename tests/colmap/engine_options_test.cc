@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "src/colmap/failure.h"
+#include "src/files/failure.h"
 
 namespace tapa {
 namespace {

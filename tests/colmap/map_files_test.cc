@@ -9,8 +9,8 @@
 #include "mvs/consistency_graph.h"
 #include "mvs/depth_map.h"
 #include "mvs/normal_map.h"
-#include "src/colmap/atomic_file.h"
-#include "src/colmap/failure.h"
+#include "src/files/atomic_file.h"
+#include "src/files/failure.h"
 #include "tests/colmap/test_folder.h"
 
 namespace tapa {

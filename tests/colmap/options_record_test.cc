@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "src/colmap/engine_options.h"
-#include "src/colmap/failure.h"
+#include "src/files/failure.h"
 #include "tests/colmap/test_folder.h"
 
 namespace tapa {

@@ -4,7 +4,7 @@
 
 #include <fstream>
 
-#include "src/colmap/failure.h"
+#include "src/files/failure.h"
 #include "tests/colmap/test_folder.h"
 
 namespace tapa {

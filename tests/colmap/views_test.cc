@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "src/colmap/failure.h"
+#include "src/files/failure.h"
 #include "tests/colmap/test_folder.h"
 #include "util/bitmap.h"
 

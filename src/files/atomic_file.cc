@@ -1,4 +1,4 @@
-#include "src/colmap/atomic_file.h"
+#include "src/files/atomic_file.h"
 
 #include <dirent.h>
 #include <fcntl.h>
@@ -11,7 +11,7 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "src/colmap/failure.h"
+#include "src/files/failure.h"
 
 namespace tapa {
 namespace {
