@@ -17,7 +17,7 @@ packages=(
   qtbase5-dev
   # The engine, the scores, the tests and the benchmarks.
   libbenchmark-dev libgtest-dev libhwy-dev libopencv-contrib-dev libopencv-dev
-  nlohmann-json3-dev
+  libnanoflann-dev libpugixml-dev nlohmann-json3-dev
 )
 
 if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then

@@ -1,34 +1,19 @@
 // Drives the program itself: what it prints, writes and refuses.
 
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
-#include <cstdio>
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <string>
 #include <vector>
 
+#include "tests/eval/run_program.h"
 #include "tests/eval/test_files.h"
 
 namespace tapa {
 namespace {
-
-std::string ReadText(const std::string& path) {
-  std::ifstream stream(path, std::ios::binary);
-  return std::string(std::istreambuf_iterator<char>(stream), {});
-}
-
-struct Result {
-  int exit_code = -1;
-  std::string out;
-  std::string err;
-};
 
 // A workspace of two views of 6x4 pixels, of which a.jpg is exact but for one
 // pixel and b.jpg is empty.
@@ -48,22 +33,12 @@ class EvaluateDepthMapsTest : public ::testing::Test {
   }
 
   Result Run(const std::string& arguments) {
-    const std::string out = folder_.File("out.txt");
-    const std::string err = folder_.File("err.txt");
-    const std::string command = "cd '" + folder_.path() + "' && '" +
-                                EVALUATE_DEPTH_MAPS "' " + arguments + " > '" +
-                                out + "' 2> '" + err + "'";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, ReadText(out),
-            ReadText(err)};
+    return RunProgram(EVALUATE_DEPTH_MAPS, arguments, folder_);
   }
 
   void ExpectError(const std::string& arguments, const std::string& part) {
-    const Result result = Run(arguments);
-    EXPECT_EQ(result.exit_code, 1) << arguments;
-    EXPECT_EQ(result.err.find("ERROR: "), 0u) << result.err;
-    EXPECT_NE(result.err.find(part), std::string::npos) << result.err;
-    EXPECT_EQ(result.err.find('\n'), result.err.size() - 1) << result.err;
+    SCOPED_TRACE(arguments);
+    ExpectErrorLine(Run(arguments), 1, part);
   }
 
   const std::string kMaps = "w/stereo/depth_maps/";
