@@ -54,19 +54,16 @@ class Part:
     is_grey: bool
 
 
-def read_observations():
-    """Of the example: pixels (x, y, point) by view number, and lines of points3D.txt."""
-    def lines(name):
-        with open(os.path.join(ROOM, "sparse", name), encoding="utf-8") as file:
-            return [line for line in file.read().split("\n") if not line.startswith("#")]
+def lines_of(name):
+    """A file of the example's model without its comments."""
+    with open(os.path.join(ROOM, "sparse", name), encoding="utf-8") as file:
+        return [line for line in file.read().split("\n") if line[:1] != "#"]
 
-    images = lines("images.txt")
-    observations = {}
-    for head, tail in zip(images[0::2], images[1::2]):
-        if head:
-            observations[int(head.split()[0])] = np.array(tail.split(), float).reshape(-1, 3)
-    points = {int(line.split()[0]): line.split()[:8] for line in lines("points3D.txt") if line}
-    return observations, points
+
+def point_lines():
+    """The example's points without their tracks, in words, by number."""
+    return {int(line.split()[0]): line.split()[:8]
+            for line in lines_of("points3D.txt") if line}
 
 
 def pinhole(source, size, shift=0.0):
@@ -187,14 +184,13 @@ def write_model(folder, cameras, photographs, names, observations, points, sourc
 
 def quaternions():
     """Rotations of the example as they stand in its images.txt, by view number."""
-    with open(os.path.join(ROOM, "sparse", "images.txt"), encoding="utf-8") as file:
-        lines = [line for line in file.read().split("\n") if not line.startswith("#")]
     return {int(line.split()[0]): [float(value) for value in line.split()[1:5]]
-            for line in lines[0::2] if line}
+            for line in lines_of("images.txt")[0::2] if line}
 
 
 def write_part(out, part, source, is_training, voxel_size):
-    observations, points = read_observations()
+    observations = colmap_model.read_observations(os.path.join(ROOM, "sparse"))
+    points = point_lines()
     rng = np.random.default_rng(4)
     for photograph in part.photographs:
         stem = os.path.splitext(photograph.view.name)[0]

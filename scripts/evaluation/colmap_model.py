@@ -111,6 +111,26 @@ def read_views(folder):
     return sorted(views, key=lambda view: view.name)
 
 
+def read_observations(folder):
+    """What each view sees: (x, y, number of the point or -1) in rows, by view number."""
+    lines = _lines(os.path.join(folder, "images.txt"))
+    observations = {}
+    for head, tail in zip(lines[0::2], lines[1::2]):
+        if head.strip():
+            observations[int(head.split()[0])] = np.array(tail.split(), float).reshape(-1, 3)
+    return observations
+
+
+def read_points(folder):
+    """Positions, (3,), of the model's points by their numbers."""
+    points = {}
+    for line in _lines(os.path.join(folder, "points3D.txt")):
+        if line.strip():
+            fields = line.split(maxsplit=4)
+            points[int(fields[0])] = np.array(fields[1:4], float)
+    return points
+
+
 def _thin_prism_fisheye(u, v, k1, k2, p1, p2, k3, k4, sx1, sy1):
     """Where the model moves a point: the equidistant fisheye's (u, v) to (u', v')."""
     uu, vv, uv = u * u, v * v, u * v

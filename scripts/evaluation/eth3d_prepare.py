@@ -11,11 +11,14 @@ import os
 
 import numpy as np
 
-from . import colmap_model, depth_maps, files
+from . import colmap_model, depth_maps, files, processes
 from .processes import Failure
 
 MODEL_FILES = ("cameras.txt", "images.txt", "points3D.txt")
 MAX_POSE_DIFFERENCE = 1e-3  # Metres, and entries of the rotation.
+# How far the median of measured depth over that of the model's points may be from 1.
+MAX_DEPTH_DISAGREEMENT = 0.05
+CHECKED_VIEWS = 8
 
 
 def _link(target, link):
@@ -112,6 +115,42 @@ def _prepare_depth(scene_path, scene, views, out, size):
     return count
 
 
+def depth_agreement(model, views, gt_depth):
+    """Median of measured depth over the depth of the model's points at their pixels.
+
+    None where no point has a measurement. Looks at some of the views.
+    """
+    points = colmap_model.read_points(model)
+    observations = colmap_model.read_observations(model)
+    ratios = []
+    for view in views[::max(1, len(views) // CHECKED_VIEWS)]:
+        path = depth_maps.find(gt_depth, view.name)
+        seen = [row for row in observations.get(view.number, ()) if int(row[2]) in points]
+        if not path or not seen:
+            continue
+        depth = depth_maps.read(path)
+        x, y = (np.array([row[axis] for row in seen]) for axis in (0, 1))
+        column = np.clip(x * depth.shape[1] / view.camera.width, 0, depth.shape[1] - 1)
+        row = np.clip(y * depth.shape[0] / view.camera.height, 0, depth.shape[0] - 1)
+        measured = depth[row.astype(int), column.astype(int)]
+        world = np.array([points[int(entry[2])] for entry in seen])
+        z = world @ view.rotation[2] + view.translation[2]
+        known = (measured > 0) & (z > 0)
+        ratios.append(measured[known] / z[known])
+    ratios = np.concatenate(ratios) if ratios else np.empty(0)
+    return float(np.median(ratios)) if len(ratios) else None
+
+
+def _check_depth(model, views, out):
+    """Raises Failure if measured depth is not that of these photographs."""
+    ratio = depth_agreement(model, views, os.path.join(out, "gt_depth"))
+    if ratio is not None and abs(ratio - 1) > MAX_DEPTH_DISAGREEMENT:
+        raise Failure(f"{out}/gt_depth is {ratio:.3f} times as deep as the points of the model; "
+                      "depth maps and photographs are not of the same scene, or not of the "
+                      "same unit")
+    return ratio
+
+
 def _check_photographs(scene_path, views):
     for view in views:
         if view.camera.model != "PINHOLE":
@@ -148,10 +187,13 @@ def prepare(scene, scene_path, out, depth_size=2000):
         _link(os.path.join(calibration, name), os.path.join(out, "sparse", name))
     if os.path.isdir(scans):
         _link(scans, os.path.join(out, "scans"))
+    count = _prepare_depth(scene_path, scene, views, out, depth_size)
+    if count == 0 and depth_folder(scene_path, scene):
+        processes.say(f"WARNING: {scene.set_name}: no depth map is at "
+                      f"{scene_path}/ground_truth_depth/{original_name(views[0].name)}")
     content = {"scene": scene.name, "resolution": scene.resolution, "split": scene.split,
-               "photographs": len(views), "scans": os.path.isdir(scans),
-               "depth_maps": _prepare_depth(scene_path, scene, views, out, depth_size),
-               "depth_size": depth_size}
+               "photographs": len(views), "scans": os.path.isdir(scans), "depth_maps": count,
+               "depth_size": depth_size, "depth_over_points": _check_depth(calibration, views, out)}
     files.write_json(os.path.join(out, "set.json"), content)
     return content
 

@@ -3,16 +3,19 @@
 A server on this machine stands in for the benchmark's site.
 """
 
+import array
 import csv
 import http.server
 import json
 import os
 import re
 import shutil
+import signal
 import stat
 import subprocess
 import tempfile
 import threading
+import time
 import unittest
 
 import tiny_workspace as tiny
@@ -263,6 +266,7 @@ class Prepare(Case):
             (content["scene"], content["resolution"], content["split"], content["photographs"],
              content["depth_maps"], content["scans"]),
             ("attic", "low", "training", 4, 4, True))
+        self.assertAlmostEqual(content["depth_over_points"], 1, delta=0.005)
         # Links are relative: the whole folder can be moved.
         moved = self.folder + "-moved"
         os.rename(self.folder, moved)
@@ -354,6 +358,23 @@ class Prepare(Case):
             file.write(b"more")
         self.expect_failure("ground_truth_depth/dslr_images/DSC_0104.JPG", "96x64 depths need")
 
+    def test_depth_of_another_unit(self):
+        folder = self.scene("ground_truth_depth/dslr_images")
+        for name in os.listdir(folder):
+            with open(os.path.join(folder, name), "rb") as file:
+                depths = array.array("f", file.read())
+            with open(os.path.join(folder, name), "wb") as file:
+                array.array("f", [1.1 * depth for depth in depths]).tofile(file)
+        self.expect_failure("times as deep as the points of the model")
+
+    def test_depth_somewhere_else(self):
+        os.rename(self.scene("ground_truth_depth/dslr_images"),
+                  self.scene("ground_truth_depth/elsewhere"))
+        result = self.prepare()
+        self.assert_done(result)
+        self.assertIn("WARNING: attic_dslr: no depth map is at", result.stdout)
+        self.assertIn("ground_truth_depth/dslr_images/DSC_0101.JPG", result.stdout)
+
     def test_calibration_of_other_poses(self):
         path = self.scene("dslr_calibration_jpg", "images.txt")
         with open(path, encoding="utf-8") as file:
@@ -437,7 +458,7 @@ class Pipeline(Case):
     def test_2_resumes(self):
         maps = self.run_path("office_dslr", "plain", "stereo", "depth_maps",
                              "dslr_images_undistorted", "DSC_0101.JPG.geometric.bin")
-        time = os.stat(maps).st_mtime_ns
+        before = os.stat(maps).st_mtime_ns
         cloud = self.run_path("office_dslr", "plain", "fused.ply")
         os.remove(cloud)
         result = run_script(*self.commands[-1][:3], "--dry_run", *METHODS, *FAST)
@@ -446,7 +467,7 @@ class Pipeline(Case):
         self.assertFalse(os.path.exists(cloud))
         self.assert_done(run_script(*self.commands[-1]))
         self.assertTrue(os.path.exists(cloud))
-        self.assertEqual(os.stat(maps).st_mtime_ns, time)
+        self.assertEqual(os.stat(maps).st_mtime_ns, before)
 
     def test_3_evaluator_of_eth3d(self):
         # It stands in for ETH3D's program, and prints its lines.
@@ -575,6 +596,23 @@ class Pipeline(Case):
                             (("submit", "--method", "plane"), "no method plane")):
             with self.subTest(words=words):
                 self.assert_failed(self.eth3d(*words), text)
+
+    def test_9_stops_and_goes_on(self):
+        # Long enough to be stopped.
+        slow = ["--seeds", "5", "--methods", "plain", "--resolution", "both", "--image_sizes",
+                "144", "--", "--PatchMatchStereo.num_iterations", "60"]
+        process = subprocess.Popen(
+            [os.path.join(SCRIPTS, "eth3d"), "run", self.folder, *slow], text=True,
+            stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
+            env=dict(os.environ, TAPA_BIN_DIR=BIN_DIR))
+        self.assertIn("stereo ...", process.stderr.readline())
+        time.sleep(0.5)
+        process.send_signal(signal.SIGINT)
+        _, errors = process.communicate(timeout=120)
+        self.assertEqual(process.returncode, 130, errors)
+        self.assertIn("ERROR: stopped; the same command goes on from here", errors)
+        # Nothing else was begun.
+        self.assertFalse(os.path.exists(self.run_path("office_rig", "plain").replace("-0", "-5")))
 
     def test_9_other_options_are_not_mixed(self):
         result = run_script("eth3d", "run", self.folder, "--methods", "tapa", "--scenes",
