@@ -22,6 +22,7 @@
 
 import dataclasses
 import os
+import re
 import tomllib
 
 from . import benchmark, files, pictures, report
@@ -62,16 +63,19 @@ class Plan:
                 if all(report.SetReport(one, out, "", "").found
                        for one in self.sets.values()) else out)
 
-    def write(self, out, bin_dir=None):
+    def write(self, out, bin_dir=None, only=None):
         """Writes the page from what is in OUT.
 
+        only: names of sets; the page is about these alone, and goes to OUT.
         Returns its path, and what is missing.
         """
-        folder = self.page_folder(out)
+        folder = out if only else self.page_folder(out)
         page = os.path.join(folder, self._content["page"])
         parts = [f"# {self._content['title']}\n",
                  self._content.get("text", "").strip() + "\n"]
         for section in self._content.get("section", []):
+            if only and section.get("set") not in only:
+                continue
             if "title" in section:
                 parts.append("#" * section.get("level", 2)
                              + f" {section['title']}\n")
@@ -79,10 +83,17 @@ class Plan:
                 parts.append(section["text"].strip() + "\n")
             if "set" in section:
                 parts += self._results(section, out, folder, bin_dir)
-        files.write_text(page, "\n".join(
-            part for part in parts if part.strip()))
-        return page, [line for one in self.sets.values()
+        text = "\n".join(part for part in parts if part.strip())
+        files.write_text(page, self._move_links(text, folder))
+        return page, [line for name, one in self.sets.items()
+                      if not only or name in only
                       for line in report.SetReport(one, out, "", "").missing()]
+
+    def _move_links(self, text, folder):
+        """Links to pages beside the plan, for a page that stands elsewhere."""
+        above = os.path.relpath(self._folder, folder).replace(os.sep, "/")
+        return text if above == "." else re.sub(
+            r"\]\(([\w./-]+\.(?:md|toml)[)#])", rf"]({above}/\1", text)
 
     def _results(self, section, out, folder, bin_dir):
         one = dataclasses.replace(

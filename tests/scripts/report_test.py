@@ -366,6 +366,25 @@ class PlanTest(TestCase):
         self.assertEqual(missing, ["- two: tapa, seed 0: not run"])
         self.assertTrue(os.path.exists(self.path("docs/images/x/one_errors.png")))
 
+    def test_a_page_about_some_sets(self):
+        os.makedirs(self.path("s", "images"))
+        for name, options in (("one", []), (
+                "two", ["--PatchMatchStereo.max_image_size", "9"])):
+            write_result(self.path("out"), name, "plain", options=options,
+                         depth={(0.02, "m"): 0.25})
+        made = self.plan_of(_PLAN.replace(
+            '"Words."', '"[a](tapa.md#b) [c](http://x/y.md) [d](z.md)"'))
+        page, missing = made.write(self.path("out"), only=["one"])
+        self.assertEqual(page, self.path("out", "results.md"))
+        self.assertEqual(missing, [])
+        text = self.read("out", "results.md")
+        self.assertIn("[a](../docs/tapa.md#b) [c](http://x/y.md) "
+                      "[d](../docs/z.md)", text)
+        self.assertIn("(images/x/one_errors.png)", text)
+        self.assertIn("## First", text)
+        self.assertNotIn("In between", text)
+        self.assertNotIn("## Second", text)
+
     def test_bad_plans(self):
         for old, new, text in (
                 ("page =", "pages =", "has no page"),
