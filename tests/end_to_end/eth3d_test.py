@@ -508,6 +508,34 @@ class Pipeline(Case):
                 self.assertGreater(scores[name]["accuracy"][-1], 0.8)
                 self.assertGreater(f1[-1], 0.3)
 
+    def test_4_scans_are_a_perfect_reconstruction(self):
+        # In the photographs' frame, by the poses in the MeshLab project.
+        folder = self.path("scenes", "office", "dslr_scan_eval")
+        with open(os.path.join(folder, "scan_alignment.mlp"), encoding="ascii") as file:
+            scans = re.findall(r'filename="([^"]*)">\s*<MLMatrix44>([^<]*)<', file.read())
+        self.assertEqual([name for name, _ in scans], ["scan1.ply", "scan2.ply", "scan3.ply"])
+        world = array.array("f")
+        for name, text in scans:
+            m = [float(word) for word in text.split()]
+            with open(os.path.join(folder, name), "rb") as file:
+                points = array.array("f", file.read().split(b"end_header\n", 1)[1])
+            for x, y, z in zip(points[0::3], points[1::3], points[2::3]):
+                world.extend(m[i] * x + m[i + 1] * y + m[i + 2] * z + m[i + 3]
+                             for i in (0, 4, 8))
+        cloud = self.path("perfect.ply")
+        with open(cloud, "wb") as file:
+            file.write(f"ply\nformat binary_little_endian 1.0\nelement vertex {len(world) // 3}\n"
+                       "property float x\nproperty float y\nproperty float z\nend_header\n"
+                       .encode() + world.tobytes())
+        result = tiny.run([os.path.join(BIN_DIR, "evaluate_point_cloud"), "--tolerances",
+                           "0.001,0.02", "--reconstruction_ply_path", cloud,
+                           "--ground_truth_mlp_path",
+                           os.path.join(folder, "scan_alignment.mlp")])
+        self.assert_done(result)
+        values = re.search(r"F1-scores: ([0-9.]+) ([0-9.]+)", result.stdout)
+        self.assertGreater(float(values[1]), 0.999, result.stdout)
+        self.assertGreater(float(values[2]), 0.999, result.stdout)
+
     def test_5_submission(self):
         result = self.eth3d("submit", "--method", "tapa")
         self.assert_done(result)
