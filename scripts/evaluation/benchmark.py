@@ -10,6 +10,10 @@ from .methods import METHODS
 from .processes import Failure
 
 
+_DEPTH_SCANS = os.path.join(os.path.dirname(os.path.abspath(__file__)),
+                            "depth_scans.py")
+
+
 @dataclasses.dataclass
 class Benchmark:
     """What is compared on one set of photographs.
@@ -169,9 +173,15 @@ class Scorer:
                 depth_scans.make_scans(self._benchmark.data, folder)
             except ValueError as error:
                 raise Failure(str(error)) from error
-        about = files.read_json(os.path.join(folder, "scans.json"))
-        return project, ["--beam_divergence_halfangle_deg",
-                         f"{about['beam_divergence_halfangle_deg']:.6g}"]
+        return project, _beam_options(folder)
+
+
+def _beam_options(folder):
+    """Beams as wide as the pixels that scans were made from."""
+    about = files.read_json(os.path.join(folder, "scans.json"))
+    return ["--beam_divergence_halfangle_deg",
+            f"{about['beam_divergence_halfangle_deg']:.6g}"
+            if about else "(as scans.json says)"]
 
 
 def run(benchmark, out, bin_dir, evaluator=None):
@@ -243,6 +253,13 @@ def take_comparison(benchmark, folder, name, paths):
 def missing_commands(benchmark, out, bin_dir, evaluator=None):
     """The commands that run() would execute for the methods, in order."""
     commands = []
+    scans, options = own_scans(benchmark), []
+    if evaluator is not None and not scans:
+        folder = benchmark.folder(out, "scans")
+        scans = os.path.join(folder, "scan_alignment.mlp")
+        options = _beam_options(folder)
+        if not os.path.exists(scans):
+            commands.append([_DEPTH_SCANS, benchmark.data, folder])
     for one in stereo_runs(benchmark, out, bin_dir):
         commands += stereo_run.missing_commands(one)
         if has_depth(benchmark) and depth_scores.load(one.folder) is None:
@@ -251,8 +268,7 @@ def missing_commands(benchmark, out, bin_dir, evaluator=None):
                 one.path("depth_scores.json"), bin_dir=bin_dir))
         if evaluator is None or cloud_scores.load(one.folder):
             continue
-        scans = own_scans(benchmark) or benchmark.folder(
-            out, "scans", "scan_alignment.mlp")
         commands += [cloud_scores.command(evaluator, one.path(name + ".ply"),
-                                          scans) for name in one.fusions]
+                                          scans, options=options)
+                     for name in one.fusions]
     return commands
