@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "src/eval/command_line.h"
 #include "src/eval/depth_map_io.h"
 #include "src/eval/depth_map_score.h"
 #include "src/eval/score_table.h"
@@ -129,22 +130,9 @@ void CheckArguments(const Arguments& arguments) {
 std::optional<Arguments> ParseArguments(int argc, char** argv) {
   Arguments arguments;
   const po::options_description options = Describe(&arguments);
-  // Long names in full and nothing else, as in COLMAP.
-  const int style = po::command_line_style::allow_long |
-                    po::command_line_style::long_allow_adjacent |
-                    po::command_line_style::long_allow_next;
-  po::variables_map variables;
-  po::store(po::command_line_parser(argc, argv)
-                .options(options)
-                .positional(po::positional_options_description())
-                .style(style)
-                .run(),
-            variables);
-  if (variables.count("help") > 0) {
-    std::cout << options;
-    return std::nullopt;
-  }
-  po::notify(variables);
+  const auto parsed = ParseCommandLine(argc, argv, options);
+  if (!parsed.has_value()) return std::nullopt;
+  const po::variables_map& variables = *parsed;
   if (variables.count("max_textureness") > 0) {
     for (const Tolerance& bound :
          ParseTolerances(variables["max_textureness"].as<std::string>(),

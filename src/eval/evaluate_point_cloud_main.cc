@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "src/eval/cloud_checks.h"
+#include "src/eval/command_line.h"
 #include "src/eval/meshlab_project.h"
 #include "src/eval/point_cloud.h"
 #include "src/eval/point_cloud_score.h"
@@ -133,22 +134,9 @@ void CheckArguments(const Arguments& arguments) {
 std::optional<Arguments> ParseArguments(int argc, char** argv) {
   Arguments arguments;
   const po::options_description options = Describe(&arguments);
-  // Long names in full and nothing else, as in COLMAP.
-  const int style = po::command_line_style::allow_long |
-                    po::command_line_style::long_allow_adjacent |
-                    po::command_line_style::long_allow_next;
-  po::variables_map variables;
-  po::store(po::command_line_parser(argc, argv)
-                .options(options)
-                .positional(po::positional_options_description())
-                .style(style)
-                .run(),
-            variables);
-  if (variables.count("help") > 0) {
-    std::cout << options;
-    return std::nullopt;
-  }
-  po::notify(variables);
+  const auto parsed = ParseCommandLine(argc, argv, options);
+  if (!parsed.has_value()) return std::nullopt;
+  const po::variables_map& variables = *parsed;
   for (const char* name :
        {"reconstruction_ply_path", "ground_truth_mlp_path", "tolerances"}) {
     if (variables.count(name) == 0) {
@@ -234,6 +222,19 @@ void WriteClouds(const std::string& path, const std::vector<Vec3>& points,
   }
 }
 
+// Writes the coloured clouds, if they are wanted, and takes the mean.
+std::vector<double> Summarize(const Arguments& arguments,
+                              const std::string& cloud_path,
+                              const std::vector<Vec3>& points,
+                              const std::vector<Verdict>& verdicts,
+                              ThreadTeam* team) {
+  if (!cloud_path.empty()) {
+    WriteClouds(cloud_path, points, verdicts, arguments.tolerances);
+  }
+  return AverageOverVoxels(points, verdicts, arguments.tolerances.size(),
+                           arguments.voxel_size, team);
+}
+
 std::vector<double> ScoreCompleteness(const Arguments& arguments,
                                       const std::vector<Vec3>& reconstruction,
                                       const std::vector<LaserScan>& scans,
@@ -246,12 +247,8 @@ std::vector<double> ScoreCompleteness(const Arguments& arguments,
   if (!reconstruction.empty()) {
     Warn(CheckOverlap(verdicts, tolerances.back(), tolerances.size()));
   }
-  if (!arguments.completeness_cloud_path.empty()) {
-    WriteClouds(arguments.completeness_cloud_path, points, verdicts,
-                tolerances);
-  }
-  return AverageOverVoxels(points, verdicts, tolerances.size(),
-                           arguments.voxel_size, team);
+  return Summarize(arguments, arguments.completeness_cloud_path, points,
+                   verdicts, team);
 }
 
 std::vector<double> ScoreAccuracy(const Arguments& arguments,
@@ -259,18 +256,13 @@ std::vector<double> ScoreAccuracy(const Arguments& arguments,
                                   const std::vector<LaserScan>& scans,
                                   ThreadTeam* team) {
   std::cout << "Computing accuracy" << std::endl;
-  const std::vector<double>& tolerances = arguments.tolerances;
-  const std::vector<Verdict> verdicts =
-      JudgeAccuracy(reconstruction, scans, tolerances, arguments.beam, team);
+  const std::vector<Verdict> verdicts = JudgeAccuracy(
+      reconstruction, scans, arguments.tolerances, arguments.beam, team);
   if (!reconstruction.empty()) {
-    Warn(CheckJudged(verdicts, tolerances.size()));
+    Warn(CheckJudged(verdicts, arguments.tolerances.size()));
   }
-  if (!arguments.accuracy_cloud_path.empty()) {
-    WriteClouds(arguments.accuracy_cloud_path, reconstruction, verdicts,
-                tolerances);
-  }
-  return AverageOverVoxels(reconstruction, verdicts, tolerances.size(),
-                           arguments.voxel_size, team);
+  return Summarize(arguments, arguments.accuracy_cloud_path, reconstruction,
+                   verdicts, team);
 }
 
 void PrintLine(const std::string& name, const std::vector<double>& values) {
