@@ -10,6 +10,8 @@ OUT/SET/METHOD-SEED, which is a COLMAP workspace with these files beside it:
     cloud_scores.json   scores of the points (cloud_scores.py)
     *.log               what the programs printed
 
+Scores remember what they were made from, and are not shown for anything else.
+
 Shares are 0 to 1, lengths in metres, times in seconds, memory in bytes.
 Functions raise processes.Failure, whose text is one line for the user.
 """

@@ -167,7 +167,8 @@ class Scorer:
         from . import depth_scans
         folder = self._benchmark.folder(self._out, "scans")
         project = os.path.join(folder, "scan_alignment.mlp")
-        if not os.path.exists(project):
+        if (not os.path.exists(project)
+                or depth_scans.are_of_other_data(self._benchmark.data, folder)):
             processes.say(f"{folder}: scans from measured depth ...")
             try:
                 depth_scans.make_scans(self._benchmark.data, folder)
@@ -233,6 +234,8 @@ def take_comparison(benchmark, folder, name, paths):
     record = stereo_run.load_record(folder)
     if record is not None and record.get("compare") != paths:
         shutil.rmtree(folder)  # Links and scores of something else.
+    # The other tool may have made maps of fewer photographs since.
+    shutil.rmtree(os.path.join(folder, "stereo"), ignore_errors=True)
     os.makedirs(folder, exist_ok=True)
     record = {"set": benchmark.name, "method": name, "seed": 0, "options": [],
               "compare": paths, "done": [], "failed": None, "views": None,

@@ -2,8 +2,11 @@
 
 cloud_scores.json has, by the name of the cloud (FOLDER/NAME.ply),
 
-    {"tolerances": [..], "completeness": [..], "accuracy": [..], "f1": [..]}
+    {"tolerances": [..], "completeness": [..], "accuracy": [..], "f1": [..],
+     "made_from": {"cloud", "scans", "evaluator", "options"}}
 
+The last says what was scored, against what and how, so that the score of another
+cloud or by another program is not taken for it.
 evaluator is evaluate_point_cloud or ETH3D's own program, which takes the same
 options and prints the same lines.
 """
@@ -55,40 +58,54 @@ def parse(text):
     return result
 
 
-def score(folder, clouds, scans, evaluator=None, tolerances=None,
-          options=(), paths=None):
+def score(folder, clouds, scans, evaluator=None, tolerances=None, options=()):
     """Scores clouds, by name, unless FOLDER/cloud_scores.json has them.
 
-    paths: where a cloud is not FOLDER/NAME.ply, its path by name. Returns all
-    that is in cloud_scores.json.
+    Returns all that is in cloud_scores.json.
     """
     path = os.path.join(folder, "cloud_scores.json")
-    scores = files.read_json(path) or {}
+    evaluator = evaluator or default_evaluator()
+    scores = load(folder)
+    way = {"scans": files.fingerprint(os.path.dirname(scans)),
+           "evaluator": os.path.basename(evaluator), "options": list(options)}
     for name in clouds:
-        if _covers(scores.get(name), tolerances or TOLERANCES):
+        if _covers(scores.get(name), tolerances or TOLERANCES, way):
             continue
-        cloud = (paths or {}).get(name, os.path.join(folder, name + ".ply"))
+        cloud = os.path.join(folder, name + ".ply")
         log = os.path.join(folder, f"cloud_scores_{name}.log")
         if os.path.exists(log):
             os.remove(log)
         processes.say(f"{folder}: score of {name}.ply ...")
-        processes.run(command(evaluator or default_evaluator(), cloud, scans,
-                              tolerances, options), log)
+        processes.run(command(evaluator, cloud, scans, tolerances, options), log)
         with open(log, encoding="utf-8", errors="replace") as file:
             scores[name] = parse(file.read())
+        scores[name]["made_from"] = {"cloud": files.fingerprint(cloud), **way}
         files.write_json(path, scores)
     return scores
 
 
-def _covers(score_, tolerances):
-    return score_ is not None and all(
-        any(abs(value - there) < 1e-9 for there in score_["tolerances"])
-        for value in tolerances)
+def _covers(score_, tolerances, way):
+    if score_ is None or not all(
+            any(abs(value - there) < 1e-9 for there in score_["tolerances"])
+            for value in tolerances):
+        return False
+    known = score_.get("made_from", way)
+    return all(known[key] == value for key, value in way.items())
 
 
 def load(folder):
-    """The scores in a folder, {} where there are none."""
-    return files.read_json(os.path.join(folder, "cloud_scores.json")) or {}
+    """The scores of the clouds in a folder, by name; those of other clouds not.
+
+    Scores stay where the cloud is gone.
+    """
+    scores = files.read_json(os.path.join(folder, "cloud_scores.json")) or {}
+    return {name: one for name, one in scores.items()
+            if _is_of(one, os.path.join(folder, name + ".ply"))}
+
+
+def _is_of(score_, cloud):
+    known, now = score_.get("made_from"), files.fingerprint(cloud)
+    return known is None or not now or known["cloud"] == now
 
 
 def at(score_, value):

@@ -143,10 +143,21 @@ def make_scans(data, out, names=None, every=1, voxel_size=0.0, max_depth=np.inf)
     if not scans:
         raise Failure(f"the depth maps in {data}/gt_depth hold no depth to scan")
     files.write_json(os.path.join(out, "scans.json"),
-                     {"beam_divergence_halfangle_deg": max(angles), "scans": counts})
+                     {"beam_divergence_halfangle_deg": max(angles), "scans": counts,
+                      "made_from": _source(data)})
     project = os.path.join(out, "scan_alignment.mlp")
     write_project(project, scans)
     return project
+
+
+def _source(data):
+    return files.fingerprint(os.path.join(data, "gt_depth"), os.path.join(data, "sparse"))
+
+
+def are_of_other_data(data, out):
+    """Whether scans are not of the depth and the poses that a data set has now."""
+    about = files.read_json(os.path.join(out, "scans.json")) or {}
+    return about.get("made_from", _source(data)) != _source(data)
 
 
 def main():

@@ -2,7 +2,8 @@
 
 depth_scores.json is what that program writes with --json: "overall" and "images",
 and "by_textureness" with the score of all pixels of lower textureness for
-several bounds.
+several bounds. "made_from" says of which maps and measurements, so that scores of
+others are not taken for theirs.
 """
 
 import os
@@ -41,16 +42,33 @@ def score(workspace, ground_truth, folder=None, **options):
     """
     folder = folder or workspace
     path = os.path.join(folder, "depth_scores.json")
-    found = files.read_json(path)
-    if found is not None and _covers(found, **options):
+    found = load(folder)
+    if (found is not None and _covers(found, **options)
+            and _same(found, "truth", ground_truth)):
         return found
     machine.find_program(options.get("bin_dir") or machine.default_bin_dir(),
                          "evaluate_depth_maps")
     processes.say(f"{folder}: scores of depth maps ...")
-    processes.run(command(workspace, ground_truth, path + ".new", **options),
+    raw = path + ".raw"
+    processes.run(command(workspace, ground_truth, raw, **options),
                   os.path.join(folder, "depth_scores.log"))
-    os.replace(path + ".new", path)
-    return files.read_json(path)
+    scores = files.read_json(raw)
+    scores["made_from"] = {"maps": files.fingerprint(_maps(workspace)),
+                           "truth": files.fingerprint(ground_truth)}
+    files.write_json(path, scores)
+    os.remove(raw)
+    return scores
+
+
+def _maps(workspace):
+    return os.path.join(workspace, "stereo", "depth_maps")
+
+
+def _same(scores, what, path):
+    """Whether scores are of what is at a path. Where that is gone, they stay."""
+    known = scores.get("made_from")  # Not of scores that the program alone wrote.
+    now = files.fingerprint(path)
+    return known is None or not now or known[what] == now
 
 
 def _covers(scores, tolerances=None, relative_tolerances=None,
@@ -67,8 +85,10 @@ def _covers(scores, tolerances=None, relative_tolerances=None,
 
 
 def load(folder):
-    """The scores in a folder, None where there are none."""
-    return files.read_json(os.path.join(folder, "depth_scores.json"))
+    """The scores in a folder, None where there are none of the maps in it."""
+    scores = files.read_json(os.path.join(folder, "depth_scores.json"))
+    return (scores if scores is not None
+            and _same(scores, "maps", _maps(folder)) else None)
 
 
 def at(part, value, unit="m"):

@@ -2,6 +2,7 @@
 
 import json
 import os
+import zlib
 
 from .processes import Failure
 
@@ -28,3 +29,45 @@ def read_json(path):
     except (OSError, ValueError) as error:
         raise Failure(f"{path} cannot be read ({error}); remove it to make it "
                       "anew") from error
+
+
+def fingerprint(*paths):
+    """Text that changes with the files at these paths, or in these folders.
+
+    "" if there are none. It is made of names, sizes and samples of the content:
+    all of a file of gigabytes would take too long, and times are lost in copies.
+    """
+    known = 0
+    for path in paths:
+        for name in _files_in(path):
+            known = zlib.crc32(_sample(path, name), known)
+    return f"{known:08x}" if known else ""
+
+
+def is_newer(path, *sources):
+    """Whether a file exists and is newer than its sources; "" is none."""
+    return os.path.exists(path) and all(
+        not source or os.path.getmtime(source) < os.path.getmtime(path)
+        for source in sources)
+
+
+def _files_in(path):
+    """Names of the files in a folder, in order; "" for a file."""
+    if os.path.isfile(path):
+        return [""]
+    return sorted((os.path.relpath(os.path.join(folder, name), path)
+                   for folder, _, names in os.walk(path, followlinks=True)
+                   for name in names), key=os.fsencode)
+
+
+def _sample(path, name, count=8, block=4096):
+    path = os.path.join(path, name) if name else path
+    if not os.path.exists(path):  # A link to nothing.
+        return b""
+    with open(path, "rb") as file:
+        size = file.seek(0, os.SEEK_END)
+        parts = [os.fsencode(name), str(size).encode()]
+        for i in range(count):
+            file.seek(max(0, size - block) * i // (count - 1))
+            parts.append(file.read(block))
+    return b"\n".join(parts)

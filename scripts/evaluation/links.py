@@ -41,14 +41,18 @@ def find_kind(path, names):
         if any(os.path.exists(_map_path(folder, name, kind))
                for name in names):
             return kind
-    raise Failure(f"{path} has no depth map of {names[0]}: it should be called "
-                  f"{names[0]}.geometric.bin")
+    name = names[0] if names else "PHOTOGRAPH"
+    raise Failure(f"{path} has no depth map of {name}: it should be called "
+                  f"{name}.geometric.bin")
 
 
-def has_map(path, name):
-    """Whether a workspace or folder of maps has one of a photograph."""
-    return any(os.path.exists(_map_path(map_folder(path), name, kind))
-               for kind in (*_KINDS, ""))
+def find_map(path, name):
+    """Path of a photograph's map in a workspace or folder of maps, "" if none."""
+    for kind in (*_KINDS, ""):
+        found = _map_path(map_folder(path), name, kind)
+        if os.path.exists(found):
+            return found
+    return ""
 
 
 def _map_path(folder, name, kind):

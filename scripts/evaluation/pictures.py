@@ -3,7 +3,7 @@
 import os
 import shutil
 
-from . import links, machine, processes
+from . import depth_maps, files, links, machine, processes
 from .methods import METHODS, label
 
 _WIDTH = 800
@@ -17,12 +17,15 @@ def _stem(name):
 def draw_views(data, maps, folder, names, bin_dir=None):
     """Draws views with evaluate_depth_maps into folder. Returns their paths.
 
-    maps: the workspace whose maps are drawn. A picture that exists is kept.
+    maps: the workspace whose maps are drawn. A picture that is newer than what
+    it shows is kept.
     """
     bin_dir = bin_dir or machine.default_bin_dir()
+    truth = os.path.join(data, "gt_depth")
     paths = [os.path.join(folder, _stem(name) + ".png") for name in names]
     missing = [name for name, path in zip(names, paths)
-               if not os.path.exists(path)]
+               if not files.is_newer(path, links.find_map(maps, name),
+                                     depth_maps.find(truth, name))]
     if missing:
         workspace = os.path.join(folder, "workspace")
         shutil.rmtree(workspace, ignore_errors=True)
@@ -30,7 +33,6 @@ def draw_views(data, maps, folder, names, bin_dir=None):
         command = [machine.find_program(bin_dir, "evaluate_depth_maps"),
                    "--workspace_path", workspace, "--pictures",
                    os.path.join(folder, "new")]
-        truth = os.path.join(data, "gt_depth")
         if os.path.isdir(truth):
             command += ["--ground_truth_path", truth]
         processes.run(command, os.path.join(folder, "pictures.log"))
@@ -84,7 +86,7 @@ def draw_comparison(output, data, found, methods, view, bin_dir=None):
     paths, shown = [], []
     for method in chosen_methods(methods):
         for run in found.get(method, [])[:1]:
-            if links.has_map(run.folder, view):
+            if links.find_map(run.folder, view):
                 paths += draw_views(data, run.folder,
                                     os.path.join(run.folder, "pictures"),
                                     [view], bin_dir)

@@ -136,12 +136,23 @@ def complete(run):
     if "stereo" not in record["done"]:
         _make_workspace(run, record)
         processes.say(f"{run.folder}: stereo ...")
+        before = files.fingerprint(run.path("stereo", "depth_maps"))
         _step(run, record, "stereo", stereo_command(run), "stereo.log")
+        if files.fingerprint(run.path("stereo", "depth_maps")) != before:
+            _remove_clouds(run)
         record["views"], record["image_size"] = describe_maps(run.folder)
         _finish(run, record, "stereo")
     for name in run.fusions:
         _fuse(run, record, name)
     return record
+
+
+def _remove_clouds(run):
+    """Clouds of maps that are no more, as of a run whose record was lost."""
+    for name in run.fusions:
+        for end in (".ply", ".ply.vis"):
+            if os.path.exists(run.path(name + end)):
+                os.remove(run.path(name + end))
 
 
 def _fuse(run, record, name):

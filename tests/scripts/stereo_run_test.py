@@ -154,6 +154,16 @@ class StereoRunTest(TestCase):
         self.assertIsNone(stereo_run.total(record))
         self.assertEqual(record["views"], 4)
 
+    def test_a_cloud_of_maps_that_are_no_more_is_made_anew(self):
+        run = self.run_of()
+        stereo_run.complete(run)
+        os.remove(run.path("record.json"))
+        os.remove(run.path("stereo", "depth_maps", "a.jpg.geometric.bin"))
+        write(run.path("fused.ply"), "of other maps")
+        stereo_run.complete(run)
+        with open(run.path("fused.ply"), encoding="utf-8") as file:
+            self.assertEqual(file.read(), "ply\n")
+
     def test_maps_of_other_photographs_are_refused(self):
         run = self.run_of()
         stereo_run.complete(run)
@@ -264,6 +274,30 @@ class CloudScoresTest(TestCase):
         with open(self.path("calls"), encoding="utf-8") as file:
             self.assertEqual(len(file.read().splitlines()), 2)
 
+    def test_scores_are_not_taken_for_those_of_something_else(self):
+        evaluator = self.evaluator(self.OUTPUT)
+        scans = write(self.path("scans", "scan_alignment.mlp"), "poses")
+        write(self.path("fused.ply"), "points")
+
+        def calls(program=evaluator, options=()):
+            cloud_scores.score(self.folder, ["fused"], scans, program,
+                               [0.01, 0.02], options)
+            with open(self.path("calls"), encoding="utf-8") as file:
+                return len(file.read().splitlines())
+
+        self.assertEqual((calls(), calls()), (1, 1))
+        write(self.path("scans", "scan1.ply"), "a scan")
+        self.assertEqual((calls(), calls()), (2, 2))
+        other = write(self.path("theirs"), f"#!/bin/sh\nexec '{evaluator}' \"$@\"", True)
+        self.assertEqual((calls(other), calls(other)), (3, 3))
+        self.assertEqual((calls(other, ["--a", "1"]), calls(other, ["--a", "1"])), (4, 4))
+        # What is shown without scoring is not that of another cloud, either.
+        write(self.path("fused.ply"), "Points")
+        self.assertEqual(cloud_scores.load(self.folder), {})
+        self.assertEqual(calls(other, ["--a", "1"]), 5)
+        os.remove(self.path("fused.ply"))  # For want of space.
+        self.assertIn("fused", cloud_scores.load(self.folder))
+
     def test_output_that_is_no_score(self):
         for output, code, text in (
                 ("Tolerances: 0.01\n", 0, "no line Completenesses"),
@@ -308,6 +342,31 @@ class DepthScoresTest(TestCase):
         with open(self.path("calls"), encoding="utf-8") as file:
             self.assertEqual(file.read(), "call\ncall\n")
 
+    def test_scored_again_for_other_maps_and_other_measurements(self):
+        self.evaluator()
+        files.write_json(self.path("result"), self.scores(
+            [(0.01, "m"), (1, "%")], [0.75]))
+        maps = self.path("stereo", "depth_maps", "a.jpg.geometric.bin")
+        write(maps, "a map")
+        write(self.path("gt", "a.png"), "depth")
+
+        def calls():
+            depth_scores.score(self.folder, self.path("gt"), tolerances=[0.01],
+                               relative_tolerances=[1], textureness=[0.75],
+                               bin_dir=self.path("bin"))
+            with open(self.path("calls"), encoding="utf-8") as file:
+                return len(file.read().splitlines())
+
+        self.assertEqual((calls(), calls()), (1, 1))
+        write(self.path("gt", "a.png"), "other")
+        self.assertEqual((calls(), calls()), (2, 2))
+        write(maps, "A map")
+        self.assertIsNone(depth_scores.load(self.folder))
+        self.assertEqual((calls(), calls()), (3, 3))
+        os.remove(maps)  # For want of space.
+        self.assertIsNotNone(depth_scores.load(self.folder))
+        self.assertEqual(calls(), 3)
+
 
 class LinksTest(TestCase):
     def setUp(self):
@@ -342,6 +401,17 @@ class LinksTest(TestCase):
 
 
 class BenchmarkCheckTest(TestCase):
+    def test_maps_that_another_tool_has_no_more(self):
+        for name in "ab":
+            write(self.path("data", "images", name + ".jpg"))
+            write(self.path("maps", name + ".jpg.geometric.bin"), "4&3&1&")
+        one = benchmark.Benchmark("data", self.path("data"))
+        folder = self.path("out", "x-0")
+        for count in (2, 1):
+            benchmark.take_comparison(one, folder, "x", [self.path("maps")])
+            self.assertEqual(stereo_run.load_record(folder)["views"], count)
+            os.remove(self.path("maps", "ab"[count - 1] + ".jpg.geometric.bin"))
+
     def test_bad_data_and_comparisons(self):
         data = self.path("data")
         one = benchmark.Benchmark("data", data)
