@@ -15,3 +15,12 @@ Scores remember what they were made from, and are not shown for anything else.
 Shares are 0 to 1, lengths in metres, times in seconds, memory in bytes.
 Functions raise processes.Failure, whose text is one line for the user.
 """
+
+import importlib.util
+import sys
+
+# Before anything runs for hours and then cannot be drawn.
+for _module, _package in (("numpy", "numpy"), ("cv2", "opencv"),
+                          ("matplotlib", "matplotlib"), ("PIL", "pil")):
+    if importlib.util.find_spec(_module) is None:
+        sys.exit(f"ERROR: python3-{_package} is missing; run scripts/install_deps.sh")

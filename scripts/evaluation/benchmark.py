@@ -5,7 +5,8 @@ import os
 import re
 import shutil
 
-from . import cloud_scores, depth_scores, files, links, processes, stereo_run
+from . import (cloud_scores, depth_maps, depth_scans, depth_scores, files, links,
+               processes, stereo_run)
 from .methods import METHODS
 from .processes import Failure
 
@@ -56,8 +57,10 @@ def command_text(benchmark):
     """What to type for this on a command line; DATA is the data sets' folder."""
     words = ["scripts/benchmark"]
     inside = os.path.basename(os.path.normpath(benchmark.data))
+    # Sets with the same photographs must not share a folder of results.
     words += ["examples/room" if inside == "room" else f"DATA/{inside}",
-              "--out", "OUT"]
+              "--out", "OUT" if inside == benchmark.name
+              else f"OUT/{benchmark.name}"]
     for key in ("methods", "seeds", "sources", "every", "tolerances",
                 "relative_tolerances"):
         value = getattr(benchmark, key)
@@ -77,6 +80,16 @@ def check(benchmark):
     if not (has_depth(benchmark) or own_scans(benchmark)):
         raise Failure(f"{benchmark.data} has neither gt_depth/ nor a MeshLab "
                       "project in scans/, so that nothing can be scored")
+    photographs = links.photographs(benchmark.data, benchmark.every)
+    if len(photographs) < 2:
+        raise Failure(f"{benchmark.data}/images has fewer than two photographs "
+                      "to use")
+    truth = os.path.join(benchmark.data, "gt_depth")
+    if has_depth(benchmark) and not any(
+            depth_maps.find(truth, name) for name in photographs):
+        stem = os.path.splitext(photographs[0])[0]
+        raise Failure(f"{truth} has no depth of any photograph that takes part, "
+                      f"such as {stem}.png")
     for method in benchmark.methods:
         if method not in METHODS:
             raise Failure(f"unknown method {method}; there are "
@@ -84,7 +97,7 @@ def check(benchmark):
     for name, path in benchmark.compare:
         check_comparison(name, path)
     for view in benchmark.views:
-        if view not in links.photographs(benchmark.data, benchmark.every):
+        if view not in photographs:
             raise Failure(f"{benchmark.data}/images has no photograph {view} "
                           "that takes part")
 
@@ -164,7 +177,6 @@ class Scorer:
 
     def _make_scans(self):
         """What scanners at the cameras would have measured."""
-        from . import depth_scans
         folder = self._benchmark.folder(self._out, "scans")
         project = os.path.join(folder, "scan_alignment.mlp")
         if (not os.path.exists(project)
@@ -215,11 +227,15 @@ def _attempt(failures, folder, steps):
     for step, function in steps:
         try:
             function()
-        except Failure as error:
-            processes.say(f"ERROR: {folder}: {error}")
-            failures.append((folder, str(error)))
+        except processes.Interrupted:
+            raise
+        except Exception as error:  # pylint: disable=broad-except
+            # Whatever it is, the hours of the others are not lost to it.
+            text = processes.reason(error)
+            processes.say(f"FAILED {folder}: {text}")
+            failures.append((folder, text))
             if step != "stereo":  # That records it by itself.
-                stereo_run.note_failure(folder, step, error)
+                stereo_run.note_failure(folder, step, text)
             return
     stereo_run.note_failure(folder, "", None)
 
@@ -231,6 +247,7 @@ def _has_maps(folder):
 def take_comparison(benchmark, folder, name, paths):
     """Links what another tool made into a folder of results."""
     paths = [os.path.abspath(path) for path in paths]
+    photographs = links.photographs(benchmark.data, benchmark.every)
     record = stereo_run.load_record(folder)
     if record is not None and record.get("compare") != paths:
         shutil.rmtree(folder)  # Links and scores of something else.
@@ -239,13 +256,13 @@ def take_comparison(benchmark, folder, name, paths):
     os.makedirs(folder, exist_ok=True)
     record = {"set": benchmark.name, "method": name, "seed": 0, "options": [],
               "compare": paths, "done": [], "failed": None, "views": None,
+              "photographs": len(photographs),
               "image_size": None, "version": None, "machine": None,
               "seconds": {}, "cpu_seconds": {}, "peak_memory_bytes": {}}
     for path in paths:
         if os.path.isdir(path):
             links.make_view_workspace(
-                benchmark.data, path, folder,
-                links.photographs(benchmark.data, benchmark.every))
+                benchmark.data, path, folder, photographs)
             record["views"], record["image_size"] = (
                 stereo_run.describe_maps(folder))
         else:

@@ -37,7 +37,7 @@ def write(folder, runs, sets, scenes, methods, seeds=(0,), bin_dir=None):
         page, lines = _scene_page(folder, runs, sets, scene, methods, seeds,
                                   bin_dir)
         missing += lines
-        parts.append(f"- [{scene.set_name}]({page}), {scene.split}")
+        parts.append(f"- [{scene.set_name}]({report.link_to(page, '.')}), {scene.split}")
     if missing:
         parts += ["\n## What is missing\n"] + missing
     path = os.path.join(folder, "report.md")

@@ -9,7 +9,6 @@ import os
 
 from . import depth_scores, results
 from .methods import METHODS, label
-from .processes import Failure
 
 # Colours that colour-blind readers can tell apart (Okabe and Ito), and markers.
 _STYLES = [("#0072B2", "o"), ("#D55E00", "^"), ("#009E73", "s"),
@@ -28,11 +27,7 @@ def chosen_methods(methods):
 
 
 def _pyplot():
-    try:
-        import matplotlib
-    except ImportError as error:
-        raise Failure("python3-matplotlib is missing; run "
-                      "scripts/install_deps.sh") from error
+    import matplotlib  # Takes a second.
     matplotlib.use("Agg")
     import matplotlib.pyplot as pyplot
     # The same figure is the same file.

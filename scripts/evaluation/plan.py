@@ -26,11 +26,52 @@ import re
 import tomllib
 
 from . import benchmark, files, pictures, report
+from .methods import METHODS
 from .processes import Failure
 
-_SET_KEYS = {field.name for field in dataclasses.fields(benchmark.Benchmark)}
-_SECTION_KEYS = {"title", "text", "set", "show", "methods", "tolerances",
-                 "relative_tolerances", "level", "command"}
+
+
+def _is_text(value):
+    return isinstance(value, str)
+
+
+def _is_whole(value):
+    return isinstance(value, int) and not isinstance(value, bool) and value >= 0
+
+
+def _is_count(value):
+    return _is_whole(value) and value > 0
+
+
+def _is_positive(value):
+    return (isinstance(value, (int, float)) and not isinstance(value, bool)
+            and 0 < value < 1e9)
+
+
+def _list_of(check):
+    return lambda value: isinstance(value, list) and value != [] and all(
+        check(one) for one in value)
+
+
+# By key: what its value must be, and how to say that.
+_TEXT = (_is_text, "a text")
+_TEXTS = (_list_of(_is_text), "a list of texts")
+_COUNT = (_is_count, "a positive whole number")
+_WHOLE = (_is_whole, "a whole number")
+_NUMBERS = (_list_of(_is_positive), "a list of positive numbers")
+_PAGE_KEYS = {"page": _TEXT, "images": _TEXT, "title": _TEXT, "text": _TEXT,
+              "sets": (lambda value: isinstance(value, dict), "tables [sets.NAME]"),
+              "section": (_list_of(lambda one: isinstance(one, dict)),
+                          "tables [[section]]")}
+_SET_KEYS = {"data": _TEXT, "methods": _TEXTS,
+             "seeds": (_list_of(_is_whole), "a list of whole numbers"),
+             "options": _TEXTS, "sources": _COUNT, "every": _COUNT,
+             "tolerances": _NUMBERS, "relative_tolerances": _NUMBERS,
+             "views": _TEXTS, "num_views": _WHOLE}
+_SECTION_KEYS = {"title": _TEXT, "text": _TEXT, "set": _TEXT, "show": _TEXTS,
+                 "methods": _TEXTS, "tolerances": _NUMBERS,
+                 "relative_tolerances": _NUMBERS, "level": _COUNT,
+                 "command": (lambda value: isinstance(value, bool), "true or false")}
 
 
 class Plan:
@@ -43,10 +84,7 @@ class Plan:
         self._content = content
         self.sets = {}
         for name, values in content.get("sets", {}).items():
-            _check_keys(path, f"sets.{name}", values, 
-                        _SET_KEYS - {"name"} | {"num_views"})
-            if "data" not in values:
-                raise Failure(f"{path}: sets.{name} has no data")
+            _check_set(path, name, values)
             values = dict(values, data=_find_data(values["data"], data_folder,
                                                   root))
             count = values.pop("num_views", 0)
@@ -54,7 +92,6 @@ class Plan:
             if not one.views and os.path.isdir(one.data):
                 one.views = pictures.choose_views(one.data, one.every, count)
         for section in content.get("section", []):
-            _check_keys(path, "a section", section, _SECTION_KEYS)
             _check_section(path, section, self.sets)
 
     def page_folder(self, out):
@@ -125,17 +162,40 @@ def _read(path):
     for key in ("page", "title"):
         if key not in content:
             raise Failure(f"{path} has no {key}")
+    _check_keys(path, "the page", content, _PAGE_KEYS)
     return content
 
 
 def _check_keys(path, where, values, known):
-    for key in values:
+    for key, value in values.items():
         if key not in known:
             raise Failure(f"{path}: {where} has an unknown key {key}; there are "
                           + ", ".join(sorted(known)))
+        is_right, kind = known[key]
+        if not is_right(value):
+            raise Failure(f"{path}: {key} of {where} must be {kind}")
+
+
+def _check_set(path, name, values):
+    if not re.fullmatch(r"[\w.+-]+", name) or not isinstance(values, dict):
+        raise Failure(f"{path}: sets.{name} must be a table, and its name of letters, "
+                      "digits and _.+-")
+    _check_keys(path, f"sets.{name}", values, _SET_KEYS)
+    if "data" not in values:
+        raise Failure(f"{path}: sets.{name} has no data")
+    _check_methods(path, f"sets.{name}", values)
+
+
+def _check_methods(path, where, values):
+    for method in values.get("methods", []):
+        if method not in METHODS:
+            raise Failure(f"{path}: {where} has an unknown method {method}; there are "
+                          + ", ".join(METHODS))
 
 
 def _check_section(path, section, sets):
+    _check_keys(path, "a section", section, _SECTION_KEYS)
+    _check_methods(path, "a section", section)
     if "set" not in section:
         return
     if section["set"] not in sets:

@@ -38,6 +38,13 @@ class ProgramFailed(Failure):
         self.usage = usage
 
 
+def reason(error):
+    """Why something failed, in one line."""
+    text = str(error)
+    return (text if isinstance(error, (Failure, OSError))
+            else f"{type(error).__name__}: {' '.join(text.split())}")
+
+
 def command_text(command):
     """A command as one can type it."""
     return " ".join(shlex.quote(word) for word in command)
@@ -48,7 +55,7 @@ def say(text):
     print(text, file=sys.stderr, flush=True)
 
 
-def run(command, log, environment=None):
+def run(command, log):
     """Runs a command, whose output is added to the file log. Returns Usage.
 
     Raises ProgramFailed if it cannot be started or fails. SIGINT and SIGTERM
@@ -59,14 +66,14 @@ def run(command, log, environment=None):
     os.makedirs(os.path.dirname(log) or ".", exist_ok=True)
     with open(log, "ab") as file:
         begin = file.seek(0, os.SEEK_END)
-        file.write(f"$ {command_text(command)}\n".encode())
+        file.write(os.fsencode(f"$ {command_text(command)}\n"))
         file.flush()
         start = time.monotonic()
         try:
             # In a group of its own, lest the terminal interrupt it twice.
             process = subprocess.Popen(
                 command, stdin=subprocess.DEVNULL, stdout=file,
-                stderr=subprocess.STDOUT, process_group=0, env=environment)
+                stderr=subprocess.STDOUT, process_group=0)
         except OSError as error:
             raise ProgramFailed(f"{command[0]} cannot be started: "
                                 f"{error.strerror}", Usage(0, 0, 0)) from error

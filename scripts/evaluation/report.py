@@ -1,6 +1,7 @@
 """Reports as Markdown, with tables as CSV and figures beside them."""
 
 import os
+import urllib.parse
 
 from . import (depth_scores, eth3d_tables, figures, files, pictures, results,
                stereo_run, tables)
@@ -67,12 +68,22 @@ class SetReport:
     def clouds(self):
         """With the same thresholds for all methods, and with COLMAP's own."""
         text = []
+        others = self._evaluators() - {"evaluate_point_cloud"}
+        if others:
+            text.append("Points were scored by " + ", ".join(
+                f"`{name}`" for name in sorted(others)) + ".\n")
         for name in ("fused", "fused_default"):
             if self._any(lambda run, name=name: name in run.clouds):
                 text.append(self._table("points_" + name, tables.cloud_table(
                     self.found, self._methods, self.benchmark.tolerances,
                     name)))
         return "\n".join(text)
+
+    def _evaluators(self):
+        """Names of the programs that scored points."""
+        return {score["made_from"]["evaluator"] for method in self._methods
+                for run in self.found.get(method, [])
+                for score in run.clouds.values() if "made_from" in score}
 
     def ablation(self):
         """The paper's Table 2, of those families of methods that are shown."""
@@ -141,6 +152,12 @@ class SetReport:
                 if run.failure:
                     lines.append(f"- {self.benchmark.name}: {method}: "
                                  f"{run.failure}")
+                views, all_views = (run.record[key] for key in (
+                    "views", "photographs"))
+                if views is not None and views < all_views:
+                    lines.append(
+                        f"- {self.benchmark.name}: {method}: maps of {views} of "
+                        f"{all_views} photographs; its scores are of these alone")
         return lines
 
     def _any(self, condition):
@@ -165,7 +182,7 @@ class SetReport:
         return self._embed(path, caption) if caption else ""
 
     def _embed(self, path, caption):
-        link = os.path.relpath(path, self._page).replace(os.sep, "/")
+        link = link_to(path, self._page)
         title = caption.split("**")[1].rstrip(".")
         return f"![{title}]({link})\n\n{caption}\n"
 
@@ -184,6 +201,11 @@ def _split(found, benchmark):
             else:
                 others.add((method, record["seed"]))
     return kept, others
+
+
+def link_to(path, folder):
+    """The address of a file on a page in a folder; names may have spaces."""
+    return urllib.parse.quote(os.path.relpath(path, folder))
 
 
 BLOCKS = {"depth": SetReport.depth, "low_texture": SetReport.low_texture,

@@ -67,13 +67,6 @@ def load_set(out, name):
     return found
 
 
-def list_sets(out):
-    """Names of the sets that have results, in alphabetical order."""
-    if not os.path.isdir(out):
-        return []
-    return [name for name in sorted(os.listdir(out)) if load_set(out, name)]
-
-
 def mean(values):
     """The mean of the values that are known, None if there is none."""
     known = [value for value in values if value is not None]
@@ -129,8 +122,12 @@ def mean_over_sets(sets, method, tolerance, cloud="fused"):
 
 
 def step_value(runs, measure, step="stereo"):
-    """The median of what a step took, None if no run knows it."""
-    values = [run.record.get(measure, {}).get(step) for run in runs or []]
+    """The median of what a step took, None if no run knows it.
+
+    What it took so far in a run that is not complete is not what it takes.
+    """
+    values = [run.record.get(measure, {}).get(step) for run in runs or []
+              if step in run.record["done"]]
     values = [value for value in values if value is not None]
     return statistics.median(values) if values else None
 
@@ -151,9 +148,13 @@ def pool(sets):
     """The runs of several sets by method, as if they were runs of one.
 
     Means are then means over the sets, where each has the same number of runs.
+    Methods whose depth maps are not scored on all of the sets are left out, as
+    their means would be over others.
     """
+    sets = list(sets)
     found = {}
-    for one in sets:
-        for method, runs in one.items():
-            found.setdefault(method, []).extend(runs)
+    for method in {method for one in sets for method in one}:
+        runs = [[run for run in one.get(method, []) if run.depth] for one in sets]
+        if all(runs):
+            found[method] = [run for part in runs for run in part]
     return found

@@ -267,10 +267,10 @@ def _fail(run, record, step, error):
 
 
 def note_failure(folder, step, error):
-    """Records that a later step failed, or with None that none did."""
+    """Records why a later step failed, or with None that none did."""
     record = load_record(folder)
     if record is not None:
-        record["failed"] = error and {"step": step, "message": str(error)}
+        record["failed"] = error and {"step": step, "message": error}
         files.write_json(os.path.join(folder, "record.json"), record)
 
 

@@ -129,7 +129,7 @@ class BenchmarkTest(tiny.TestCase):
         self.assertIn("| method | 3 cm | 10 cm | 2 % | 7 % |", text)
         self.assertIn("| other | 50.0 / 50.0 / 50.0 |", text)
         self.assertIn("one in 4, 2 source views", text)
-        self.assertIn("Points were scored by ETH3D's own program.", text)
+        self.assertIn("Points were scored by `evaluator`.", text)
         self.assertNotIn("What is missing", text)
         for name in ("room_errors.png", "room_textureness.png",
                      "room_room_04.jpg"):
@@ -223,6 +223,10 @@ class BenchmarkTest(tiny.TestCase):
                                       "evaluate_depth_maps")):
             self.assertIn(word, line)
         self.assertFalse(os.path.exists(self.path("out")))
+        # Without programs, too, and with no wish to build them.
+        result = self.room("--dry_run", "--methods", "tapa", bin_dir=self.path("no"))
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(len(result.stdout.splitlines()), 8, result.stdout)
 
     def test_a_page_from_a_plan(self):
         with open(self.path("plan.toml"), "w", encoding="utf-8") as file:
@@ -282,6 +286,8 @@ set = "absent"
                 ([ROOM, ROOM, *out], "two data sets are called room"),
                 ([self.folder, *out], "has no folder images"),
                 ([ROOM, *out, "--eth3d_evaluator", "none"], "none is no program"),
+                ([ROOM, *out, "--eth3d_evaluator", "/tmp"], "/tmp is no program"),
+                ([ROOM, "--out", __file__ + "/x", "--report_only"], "Not a directory"),
                 (["--plan", "none.toml", *out], "none.toml cannot be read")):
             result = self.run_script(*arguments)
             self.assertEqual(result.returncode, 1, arguments)

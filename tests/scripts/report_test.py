@@ -87,7 +87,6 @@ class ResultsTest(TestCase):
         self.assertAlmostEqual(score.most_f1, 2 / 3)
         self.assertEqual(tables.score_text(score),
                          "37.5 / 75.0 / 50.0 (33.3-66.7)")
-        self.assertEqual(results.list_sets(self.folder), ["s"])
 
     def test_what_is_missing_is_none(self):
         write_result(self.folder, "s", "plain")
@@ -97,7 +96,6 @@ class ResultsTest(TestCase):
         self.assertIsNone(results.cloud_score(found["plain"], 0.02))
         self.assertIsNone(results.depth_value(found["plain"], "coverage"))
         self.assertEqual(results.load_set(self.folder, "none"), {})
-        self.assertEqual(results.list_sets(self.path("none")), [])
         self.assertEqual(tables.score_text(None), "-")
 
     def test_times(self):
@@ -109,6 +107,21 @@ class ResultsTest(TestCase):
         # 4 views of a quarter of a megapixel.
         self.assertAlmostEqual(results.cpu_per_megapixel(found["plain"]), 110)
         self.assertIsNone(results.cpu_per_megapixel(found["tapa"]))
+
+    def test_a_time_so_far_is_not_shown(self):
+        write_result(self.folder, "s", "plain", done=[])
+        found = results.load_set(self.folder, "s")
+        self.assertIsNone(results.step_value(found["plain"], "seconds"))
+
+    def test_pooled_methods_have_all_sets(self):
+        write_result(self.folder, "a", "plain", depth={(0.02, "m"): 0.25})
+        write_result(self.folder, "b", "plain", depth={(0.02, "m"): 0.5})
+        write_result(self.folder, "a", "tapa", depth={(0.02, "m"): 0.5})
+        write_result(self.folder, "b", "tapa")  # Not scored.
+        found = results.pool(results.load_set(self.folder, name) for name in "ab")
+        self.assertEqual(list(found), ["plain"])
+        self.assertAlmostEqual(
+            results.depth_score(found["plain"], 0.02).completeness, 0.375)
 
     def test_mean_over_sets_needs_all(self):
         write_result(self.folder, "a", "tapa", f1={"fused": 0.5})
@@ -283,6 +296,19 @@ class ReportTest(TestCase):
         self.assertTrue(os.path.exists(self.path("out/figures/s_errors.png")))
         self.assertIn("plain,0.02,m,0.25,0.5", self.read("out/tables/s_depth.csv"))
 
+    def test_names_with_spaces(self):
+        write_result(self.path("out"), "a b", "plain", depth={(0.02, "m"): 0.25})
+        text = self.report_of(benchmark.Benchmark("a b", self.path("s"),
+                                                  methods=["plain"]))
+        self.assertIn("](figures/a%20b_errors.png)", text)
+
+    def test_another_tool_s_maps_of_some_photographs(self):
+        write_result(self.path("out"), "s", "other", depth={(0.02, "m"): 0.25},
+                     compare=["x"], views=3, photographs=4)
+        text = self.report_of(benchmark.Benchmark(
+            "s", self.path("s"), methods=[], compare=[("other", "x")]))
+        self.assertIn("- s: other: maps of 3 of 4 photographs", text)
+
     def test_results_of_other_options_are_left_out(self):
         write_result(self.path("out"), "s", "plain", depth={(0.02, "m"): 0.25},
                      options=["--PatchMatchStereo.num_iterations", "1"])
@@ -354,7 +380,7 @@ class PlanTest(TestCase):
                                    "- two: tapa, seed 0: not run"])
         text = self.read("out", "results.md")
         self.assertIn("# Results\n\nWords.\n\n## First\n\n    scripts/benchmark "
-                      "DATA/s --out OUT --methods plain", text)
+                      "DATA/s --out OUT/one --methods plain", text)
         self.assertIn("| COLMAP | 25.0 / 50.0 / 33.3 |", text)
         self.assertIn("(images/x/one_errors.png)", text)
         self.assertIn("In between.\n\n## Second\n", text)
@@ -392,7 +418,17 @@ class PlanTest(TestCase):
                 ("data = \"s\"\nmethods", "methods", "sets.one has no data"),
                 ("tolerances", "tolerance", "unknown key tolerance;"),
                 ("set = \"two\"", "set = \"three\"", "set three, which is not"),
-                ("\"errors\"]", "\"error\"]", "shows error; there are depth")):
+                ("\"errors\"]", "\"error\"]", "shows error; there are depth"),
+                ("[sets.one]", "[sets.\"../one\"]", "its name of letters"),
+                ("[sets.one]", "sets.x = 1\n[sets.one]", "sets.x must be a table"),
+                ("[sets.one]", "every = 1\n[sets.one]", "the page has an unknown key"),
+                ("[\"plain\"]\ntol", "\"plain\"\ntol", "methods of sets.one must be a list"),
+                ("[\"plain\"]\ntol", "[\"plane\"]\ntol", "sets.one has an unknown method"),
+                ("[0.02]", "[-0.02]", "tolerances of sets.one must be a list of pos"),
+                ("data = \"s\"\nopt", "data = \"s\"\nevery = 0\nopt", "every of sets.two"),
+                ("data = \"s\"\nopt", "data = \"s\"\nseeds = 0\nopt", "seeds of sets.two"),
+                ("\"In between.\"", "3", "text of a section must be a text"),
+                ("\"Second\"", "\"x\"\nlevel = true", "level of a section")):
             with self.assertRaisesRegex(Failure, text):
                 self.plan_of(_PLAN.replace(old, new))
         with self.assertRaisesRegex(Failure, "none.toml cannot be read"):

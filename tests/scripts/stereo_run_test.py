@@ -5,6 +5,7 @@ import glob
 import os
 import signal
 import stat
+import subprocess
 import sys
 import tempfile
 import threading
@@ -239,6 +240,12 @@ class ProcessesTest(TestCase):
         with self.assertRaisesRegex(Failure, "cannot be started"):
             processes.run([self.path("none")], self.path("log"))
 
+    def test_names_that_are_no_text(self):
+        name = os.fsdecode(b"\xff \xc3\xa9")
+        processes.run(["test", "-n", name], self.path("log"))
+        with open(self.path("log"), "rb") as file:
+            self.assertIn(b"\xff", file.read())
+
 
 class CloudScoresTest(TestCase):
     OUTPUT = ("Loading reconstruction: x\nTolerances: 0.01 0.02\n"
@@ -400,6 +407,39 @@ class LinksTest(TestCase):
                                       names)
 
 
+class BenchmarkRunTest(TestCase):
+    def test_whatever_fails_does_not_stop_the_others(self):
+        one = benchmark.Benchmark("s", self.path("data"), methods=["plain", "tapa"])
+        done = []
+
+        def complete(run):
+            if run.method == "plain":
+                raise ValueError("two\nlines")
+            done.append(run.method)
+
+        self.addCleanup(setattr, stereo_run, "complete", stereo_run.complete)
+        stereo_run.complete = complete
+        failures = benchmark.run(one, self.path("out"), self.path("bin"))
+        self.assertEqual(failures, [
+            (self.path("out", "s", "plain-0"), "ValueError: two lines")])
+        self.assertEqual(done, ["tapa"])
+
+
+class PackageTest(unittest.TestCase):
+    def test_python_packages_that_are_missing_are_named_at_once(self):
+        script = ("import importlib.util, sys\n"
+                  "find = importlib.util.find_spec\n"
+                  "importlib.util.find_spec = (\n"
+                  "    lambda name: None if name == 'matplotlib' else find(name))\n"
+                  f"sys.path.insert(0, {os.path.join(_ROOT, 'scripts')!r})\n"
+                  "import evaluation.tables\n")
+        result = subprocess.run([sys.executable, "-B", "-c", script], text=True,
+                                stderr=subprocess.PIPE, check=False)
+        self.assertEqual(result.returncode, 1)
+        self.assertEqual(result.stderr, "ERROR: python3-matplotlib is missing; run "
+                                        "scripts/install_deps.sh\n")
+
+
 class BenchmarkCheckTest(TestCase):
     def test_maps_that_another_tool_has_no_more(self):
         for name in "ab":
@@ -421,7 +461,16 @@ class BenchmarkCheckTest(TestCase):
             with self.assertRaisesRegex(Failure, text):
                 benchmark.check(one)
             write(os.path.join(data, part))
+        with self.assertRaisesRegex(Failure, "fewer than two photographs"):
+            benchmark.check(one)
+        write(os.path.join(data, "images", "c.jpg"))
         benchmark.check(one)
+        os.rename(os.path.join(data, "gt_depth/a.png"),
+                  os.path.join(data, "gt_depth/x.png"))
+        with self.assertRaisesRegex(Failure, "no depth of any .* such as a.png"):
+            benchmark.check(one)
+        os.rename(os.path.join(data, "gt_depth/x.png"),
+                  os.path.join(data, "gt_depth/a.png"))
         one.views = ["b.jpg"]
         with self.assertRaisesRegex(Failure, "no photograph b.jpg"):
             benchmark.check(one)
@@ -437,8 +486,11 @@ class BenchmarkCheckTest(TestCase):
             benchmark.command_text(benchmark.Benchmark(
                 "x", "/somewhere/fountain", methods=["plain"], seeds=[0, 2],
                 every=4, tolerances=[0.5], options=["--a", "1"])),
-            "scripts/benchmark DATA/fountain --out OUT --methods plain --seeds 0,2 "
+            "scripts/benchmark DATA/fountain --out OUT/x --methods plain --seeds 0,2 "
             "--every 4 --tolerances 0.5 -- --a 1")
+        self.assertEqual(
+            benchmark.command_text(benchmark.Benchmark("y", "/somewhere/y")),
+            "scripts/benchmark DATA/y --out OUT")
 
 
 class MachineTest(unittest.TestCase):
