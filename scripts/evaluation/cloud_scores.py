@@ -29,6 +29,13 @@ def default_evaluator(bin_dir=None):
                                 "evaluate_point_cloud")
 
 
+def named_evaluator(path):
+    """Absolute path of a program that the user names. Raises Failure if it is none."""
+    if not (os.path.isfile(path) and os.access(path, os.X_OK)):
+        raise processes.Failure(f"--eth3d_evaluator: {path} is no program")
+    return os.path.abspath(path)
+
+
 def command(evaluator, cloud, scans, tolerances=None, options=()):
     """cloud: a PLY; scans: a MeshLab project of scans with their poses.
 

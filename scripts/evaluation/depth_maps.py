@@ -10,6 +10,7 @@ import re
 import cv2
 import numpy as np
 
+from . import files
 from .processes import Failure
 
 PNG_STEPS_PER_METRE = 4000
@@ -77,8 +78,5 @@ def find(folder, name):
 
 def write_bin(path, depth):
     """Writes a map in COLMAP's format."""
-    os.makedirs(os.path.dirname(path) or ".", exist_ok=True)
-    with open(path + ".new", "wb") as file:
-        file.write(b"%d&%d&1&" % (depth.shape[1], depth.shape[0]))
-        file.write(np.ascontiguousarray(depth, "<f4").tobytes())
-    os.replace(path + ".new", path)
+    files.write_bytes(path, b"%d&%d&1&" % (depth.shape[1], depth.shape[0]),
+                      np.ascontiguousarray(depth, "<f4").tobytes())

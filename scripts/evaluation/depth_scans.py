@@ -81,10 +81,8 @@ def write_ply(path, points):
     header = ("ply\nformat binary_little_endian 1.0\n"
               f"element vertex {len(points)}\n"
               "property float x\nproperty float y\nproperty float z\nend_header\n")
-    with open(path + ".new", "wb") as file:
-        file.write(header.encode("ascii"))
-        file.write(np.ascontiguousarray(points, "<f4").tobytes())
-    os.replace(path + ".new", path)
+    files.write_bytes(path, header.encode("ascii"),
+                      np.ascontiguousarray(points, "<f4").tobytes())
 
 
 def write_project(path, scans):

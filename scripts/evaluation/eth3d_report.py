@@ -2,7 +2,7 @@
 
 import os
 
-from . import (benchmark, eth3d_scenes, eth3d_tables, figures, files, links,
+from . import (benchmark, eth3d_scenes, paper_tables, figures, files, links,
                published, report, results)
 from .methods import ABLATION, TAPA_ABLATION
 
@@ -29,6 +29,7 @@ def write(folder, runs, sets, scenes, methods, seeds=(0,), bin_dir=None):
     scenes = list(scenes)
     found = {scene: results.load_set(runs, scene.set_name) for scene in scenes}
     parts = ["# ETH3D\n", "How to read this page:\n", report.GLOSSARY]
+    parts += _settings(found)
     parts += _tables(folder, runs, scenes, found)
     parts += _figures(folder, scenes, found, methods)
     parts += ["## Scenes\n"]
@@ -45,14 +46,38 @@ def write(folder, runs, sets, scenes, methods, seeds=(0,), bin_dir=None):
     return path
 
 
+def _settings(found):
+    """How every method was run, and whether it was the same on all scenes."""
+    scenes = {}  # By method and options.
+    for scene, one in found.items():
+        for run in (run for kind in one.values() for run in kind):
+            # The first two are the seed.
+            words = [f"{run.record['sources']} source views", *run.record["options"][2:]]
+            scenes.setdefault((run.method, " ".join(words)), set()).add(scene.set_name)
+    if not scenes:
+        return ["No scene has been run.\n"]
+    methods = [method for method, _ in scenes]
+    parts = ["## How it was run\n"]
+    for (method, words), names in sorted(scenes.items()):
+        parts.append(f"- `{method}`: {words}" + (
+            f"; **other scenes with other options:** this is {', '.join(sorted(names))}"
+            if methods.count(method) > 1 else ""))
+    evaluators = results.evaluators(run for one in found.values()
+                                    for kind in one.values() for run in kind)
+    if evaluators:
+        parts.append("\nPoints were scored by " + ", ".join(sorted(evaluators)) + ".")
+    return parts + [""]
+
+
 def _tables(folder, runs, scenes, found):
     parts = ["## Table 1\n", _table(folder, "table1",
-                                    eth3d_tables.table1(groups_of(runs)))]
+                                    paper_tables.table1(groups_of(runs)))]
     judged = [scene for scene in scenes if scene.split == "training"]
     high = [scene for scene in judged if scene.resolution == "high"] or judged
     names = ", ".join(scene.set_name for scene in high)
     parts += ["## Table 2\n", f"Means over {names}; the published figures are "
-              f"for {_PAPER_SCENES}.\n"]
+              f"for {_PAPER_SCENES}. The paper does not say with which thresholds it "
+              "fused COLMAP's maps; its F1 at 2 cm is that of Table 1.\n"]
     for family in (ABLATION, TAPA_ABLATION):
         for cloud in ("fused", "fused_default"):
             thresholds = (", TAPA's thresholds" if cloud == "fused"
@@ -62,7 +87,7 @@ def _tables(folder, runs, scenes, found):
                                        for kind in one.values()
                                        for run in kind):
                 parts.append(_table(
-                    folder, f"table2_{family[-1]}_{cloud}", eth3d_tables.table2(
+                    folder, f"table2_{family[-1]}_{cloud}", paper_tables.table2(
                         [found[scene] for scene in high], family, cloud,
                         thresholds, with_published=cloud == "fused")))
     return parts

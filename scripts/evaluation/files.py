@@ -7,12 +7,25 @@ import zlib
 from .processes import Failure
 
 
-def write_text(path, text):
+def write_bytes(path, *parts):
+    """Writes the parts one after the other. Raises Failure if it cannot."""
     new = path + ".new"
-    os.makedirs(os.path.dirname(path) or ".", exist_ok=True)
-    with open(new, "w", encoding="utf-8") as file:
-        file.write(text)
-    os.replace(new, path)
+    try:
+        os.makedirs(os.path.dirname(path) or ".", exist_ok=True)
+        try:
+            with open(new, "wb") as file:
+                for part in parts:
+                    file.write(part)
+            os.replace(new, path)
+        finally:
+            if os.path.exists(new):
+                os.remove(new)
+    except OSError as error:
+        raise Failure(f"{path} cannot be written: {error.strerror}") from error
+
+
+def write_text(path, text):
+    write_bytes(path, text.encode("utf-8", errors="surrogateescape"))
 
 
 def write_json(path, value):

@@ -43,7 +43,7 @@ LABELS = {
 # The columns of the paper's Table 2: with the paper's own method, and with what
 # this program does.
 ABLATION = ["plain", "paper-weights", "paper-coarse", "paper-fine",
-                  "paper-refinement", "paper"]
+            "paper-refinement", "paper"]
 TAPA_ABLATION = [name.replace("paper", "tapa") for name in ABLATION]
 
 

@@ -3,7 +3,7 @@
 import os
 import urllib.parse
 
-from . import (depth_scores, eth3d_tables, figures, files, pictures, results,
+from . import (depth_scores, paper_tables, figures, files, pictures, results,
                stereo_run, tables)
 from .methods import ABLATION, TAPA_ABLATION
 from .processes import Failure
@@ -68,7 +68,9 @@ class SetReport:
     def clouds(self):
         """With the same thresholds for all methods, and with COLMAP's own."""
         text = []
-        others = self._evaluators() - {"evaluate_point_cloud"}
+        others = results.evaluators(
+            run for method in self._methods
+            for run in self.found.get(method, [])) - {"evaluate_point_cloud"}
         if others:
             text.append("Points were scored by " + ", ".join(
                 f"`{name}`" for name in sorted(others)) + ".\n")
@@ -79,12 +81,6 @@ class SetReport:
                     name)))
         return "\n".join(text)
 
-    def _evaluators(self):
-        """Names of the programs that scored points."""
-        return {score["made_from"]["evaluator"] for method in self._methods
-                for run in self.found.get(method, [])
-                for score in run.clouds.values() if "made_from" in score}
-
     def ablation(self):
         """The paper's Table 2, of those families of methods that are shown."""
         text = []
@@ -92,7 +88,7 @@ class SetReport:
             if any(method in self._methods for method in family[1:-1]) and (
                     self._any(lambda run: "fused" in run.clouds)):
                 text.append(self._table("ablation_" + family[-1],
-                                        eth3d_tables.table2(
+                                        paper_tables.table2(
                     [self.found], family, place=" on " + self.benchmark.name)))
         return "\n".join(text)
 

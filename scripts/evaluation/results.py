@@ -121,6 +121,12 @@ def mean_over_sets(sets, method, tolerance, cloud="fused"):
     return _mean_score([dataclasses.asdict(score) for score in scores])
 
 
+def evaluators(runs):
+    """Names of the programs that scored the points of runs."""
+    return {score["made_from"]["evaluator"] for run in runs
+            for score in run.clouds.values() if "made_from" in score}
+
+
 def step_value(runs, measure, step="stereo"):
     """The median of what a step took, None if no run knows it.
 

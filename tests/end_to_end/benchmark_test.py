@@ -287,7 +287,7 @@ set = "absent"
                 ([self.folder, *out], "has no folder images"),
                 ([ROOM, *out, "--eth3d_evaluator", "none"], "none is no program"),
                 ([ROOM, *out, "--eth3d_evaluator", "/tmp"], "/tmp is no program"),
-                ([ROOM, "--out", __file__ + "/x", "--report_only"], "Not a directory"),
+                ([ROOM, "--out", __file__ + "/x", "--report_only"], "cannot be written: "),
                 (["--plan", "none.toml", *out], "none.toml cannot be read")):
             result = self.run_script(*arguments)
             self.assertEqual(result.returncode, 1, arguments)

@@ -621,6 +621,8 @@ class Pipeline(Case):
                             (("run", "--scenes", "attic"), "no scene attic"),
                             (("run", "--seeds", "one"), "'one' is no list"),
                             (("evaluate", "--eth3d_evaluator", "/nowhere"), "is no program"),
+                            (("evaluate", "--eth3d_evaluator", "/tmp"), "is no program"),
+                            (("submit", "--seeds", "0,1"), "one seed"),
                             (("submit", "--method", "plane"), "no method plane")):
             with self.subTest(words=words):
                 self.assert_failed(self.eth3d(*words), text)

@@ -11,7 +11,7 @@ import unittest
 _ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../..")
 sys.path.insert(0, os.path.join(_ROOT, "scripts"))
 from evaluation import (benchmark, eth3d_report, eth3d_scenes,  # noqa: E402
-                        eth3d_tables, figures, files, pictures, plan,
+                        paper_tables, figures, files, pictures, plan,
                         published, report, results, tables)
 from evaluation.methods import LABELS, METHODS, TAPA_ABLATION  # noqa: E402
 from evaluation.processes import Failure  # noqa: E402
@@ -192,7 +192,7 @@ class TablesTest(TestCase):
         for i, scene in enumerate(scenes):
             write_result(self.folder, scene.set_name, "tapa",
                          f1={"fused": 0.5 + 0.01 * i})
-        table = eth3d_tables.table1(eth3d_report.groups_of(self.folder))
+        table = paper_tables.table1(eth3d_report.groups_of(self.folder))
         self.assertEqual(table.rows[0], ["TAPA", "this program", "-", "52.00",
                                          "-", "-", "-", "-"])
         self.assertEqual(table.rows[1][2:], ["-"] * 6)
@@ -203,13 +203,13 @@ class TablesTest(TestCase):
         self.assertAlmostEqual(own[0][3], 0.52)
         # One scene less, and there is no mean.
         os.remove(self.path(scenes[0].set_name, "tapa-0", "cloud_scores.json"))
-        table = eth3d_tables.table1(eth3d_report.groups_of(self.folder))
+        table = paper_tables.table1(eth3d_report.groups_of(self.folder))
         self.assertEqual(table.rows[0][2:], ["-"] * 6)
 
     def test_table2(self):
         write_result(self.folder, "s", "plain", f1={"fused": 0.25})
         write_result(self.folder, "s", "tapa", f1={"fused": 0.5})
-        table = eth3d_tables.table2([results.load_set(self.folder, "s")],
+        table = paper_tables.table2([results.load_set(self.folder, "s")],
                                     TAPA_ABLATION, with_published=True)
         self.assertEqual(len(table.rows), 12)
         self.assertEqual(table.header[1], "COLMAP")
@@ -333,9 +333,22 @@ class ReportTest(TestCase):
         self.assertIn("| COLMAP, TAPA's thresholds | this program | - |", text)
         self.assertIn("| 2 cm | 50.00 / 50.00 / 50.00 | - |", text)
         self.assertIn(f"{scene.set_name}: tapa, seed 0: not run", text)
+        self.assertIn("- `plain`: 10 source views --any 1\n", text)
         self.assertIn("figures/errors.png", text)
         self.assertIn("25.0 / 50.0", self.read("report", scene.set_name + ".md"))
         self.assertTrue(os.path.exists(self.path("report/tables/table1.csv")))
+
+    def test_eth3d_scenes_with_other_options(self):
+        scenes = eth3d_scenes.all_scenes()[:2]
+        for scene, options in zip(scenes, (["--any", "1"], [])):
+            os.makedirs(self.path("sets", scene.set_name, "images"))
+            write_result(self.path("runs"), scene.set_name, "plain", options=options)
+        eth3d_report.write(self.path("report"), self.path("runs"), self.path("sets"),
+                           scenes, ["plain"])
+        text = self.read("report", "report.md")
+        for scene, words in zip(scenes, (" --any 1", "")):
+            self.assertIn(f"- `plain`: 10 source views{words}; **other scenes with other "
+                          f"options:** this is {scene.set_name}\n", text)
 
 
 _PLAN = """

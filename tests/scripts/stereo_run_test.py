@@ -247,6 +247,31 @@ class ProcessesTest(TestCase):
             self.assertIn(b"\xff", file.read())
 
 
+class FilesTest(TestCase):
+    def test_a_full_disk_leaves_what_was_there(self):
+        path = write(self.path("page.md"), "before")
+        # A device that is always full stands in for the disk.
+        os.symlink("/dev/full", path + ".new")
+        with self.assertRaisesRegex(Failure, "page.md cannot be written: No space"):
+            files.write_text(path, "after")
+        with open(path, encoding="utf-8") as file:
+            self.assertEqual(file.read(), "before")
+        self.assertEqual(os.listdir(self.folder), ["page.md"])
+        with self.assertRaisesRegex(Failure, "x cannot be written: "):
+            files.write_text(os.path.join(path, "x"), "text")
+
+    def test_fingerprints(self):
+        write(self.path("a", "b.bin"), "x" * 100000)
+        before = files.fingerprint(self.path("a"))
+        self.assertEqual(files.fingerprint(self.path("a")), before)
+        self.assertEqual(files.fingerprint(self.path("none")), "")
+        for name, text in (("b.bin", "x" * 99999), ("b.bin", "x" * 99999 + "y"),
+                           ("c.bin", "")):
+            write(self.path("a", name), text)
+            self.assertNotEqual(files.fingerprint(self.path("a")), before)
+            before = files.fingerprint(self.path("a"))
+
+
 class CloudScoresTest(TestCase):
     OUTPUT = ("Loading reconstruction: x\nTolerances: 0.01 0.02\n"
               "Completenesses: 0.25 0.5\nAccuracies: 0.5 1\n"
