@@ -634,25 +634,33 @@ TEST(Sweep, DrawsViewsInProportionToTheirProbability) {
   const SyntheticPlane scene{SyntheticOptions()};
   const CameraTable cameras(scene.problem());
   const SourceCameras views = cameras.sources();
+  const std::vector<float> steps = {0.1f, 0.1f, 0.7f, 1.0f};
   std::vector<float> cdf(views.padded_count, 1.0f);
-  const float steps[] = {0.1f, 0.1f, 0.7f, 1.0f};
-  std::copy(steps, steps + 4, cdf.begin());
   std::vector<float> num_drawn(views.padded_count);
-  std::vector<int> drawn(views.padded_count);
+  std::vector<int> order(views.padded_count);
+  std::vector<float> uniform(kDrawBlock);
   PixelScratch s = {};
   s.cdf = cdf.data();
   s.num_drawn = num_drawn.data();
-  s.drawn = drawn.data();
+  s.order = order.data();
+  s.uniform = uniform.data();
   double total[4] = {};
   for (int i = 0; i < 20000; ++i) {
-    DrawViews<SerialLanes>(SweepParams(), Random(1, i, 0), views, &s);
+    std::copy(steps.begin(), steps.end(), cdf.begin());
+    const int num_distinct =
+        DrawViews<SerialLanes>(SweepParams(), Random(1, i, 0), views, &s);
     double sum = 0;
-    for (int k = 0; k < s.num_distinct; ++k) {
-      sum += num_drawn[drawn[k]];
-      total[drawn[k]] += num_drawn[drawn[k]];
-      EXPECT_TRUE(k == 0 || num_drawn[drawn[k]] <= num_drawn[drawn[k - 1]]);
+    int seen = 0;
+    for (int k = 0; k < 4; ++k) {
+      const float drawn = num_drawn[order[k]];
+      EXPECT_EQ(drawn > 0, k < num_distinct);
+      EXPECT_TRUE(k == 0 || drawn <= num_drawn[order[k - 1]]);
+      sum += drawn;
+      total[order[k]] += drawn;
+      seen |= 1 << order[k];
     }
     ASSERT_EQ(sum, 15);
+    ASSERT_EQ(seen, 15) << "not an order of all views";
   }
   EXPECT_NEAR(total[0] / 300000, 0.1, 0.005);
   EXPECT_EQ(total[1], 0);

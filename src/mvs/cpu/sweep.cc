@@ -314,24 +314,29 @@ SweepScratch::SweepScratch(const ProblemData& data) : patch(data.window) {
   const size_t count = views.padded_count;
   backward = MakeAligned<float>(std::max(data.width, data.height) * count);
   arrays_ = MakeAligned<float>(kNumScratchArrays * count);
-  drawn_.resize(count);
+  order_.resize(count);
   projection_.resize(count);
 
   float* next = arrays_.get();
-  const auto take = [&] {
-    float* array = next;
-    next += count;
-    return array;
+  const auto take = [&](int num_arrays) {
+    float* arrays = next;
+    next += num_arrays * count;
+    return arrays;
   };
   pixel = PixelScratch();
   for (float** array : {&pixel.cost, &pixel.prob, &pixel.forward, &pixel.cdf,
                         &pixel.num_drawn, &pixel.source_depth}) {
-    *array = take();
+    *array = take(1);
   }
-  std::generate_n(pixel.hypothesis_cost, +kNumHypotheses, take);
-  std::generate_n(pixel.geom_cost, kNumDepths, take);
-  pixel.drawn = drawn_.data();
+  pixel.hypothesis_cost = take(kNumHypotheses);
+  pixel.geom_cost = take(kNumDepths);
+  pixel.stride = views.padded_count;
+  pixel.order = order_.data();
   pixel.projection = projection_.data();
+  pixel.uniform = uniform_.data();
+  pixel.plane = planes_.data();
+  pixel.homography = homographies_.data();
+  pixel.sum = sums_.data();
 }
 
 void SweepLines(const ProblemData& data, const SweepParams& params,
