@@ -30,11 +30,13 @@ namespace tapa {
 // One lane: everything runs in one thread.
 struct SerialLanes {
   // A lane's share of a loop: First(), First() + Step(), ...
-  static constexpr int First() { return 0; }
-  static constexpr int Step() { return 1; }
+  static constexpr TAPA_INLINE int First() { return 0; }
+  static constexpr TAPA_INLINE int Step() { return 1; }
   static TAPA_INLINE void Sync() {}
-  // Sum over all lanes.
+  // Sums over all lanes, and over those of a group (see below).
   static TAPA_INLINE int Sum(int value) { return value; }
+  static TAPA_INLINE float Sum(float value) { return value; }
+  static TAPA_INLINE float GroupSum(float value) { return value; }
   // Replaces values by their cumulative sums, whose last one is returned.
   static TAPA_INLINE float Accumulate(int count, float* values) {
     float sum = 0.0f;
@@ -46,9 +48,11 @@ struct SerialLanes {
   }
 
   // Correlations are shared out, too: a group of lanes measures one at a time.
+  static constexpr int kGroupSize = 1;
   static constexpr int kNumGroups = 1;
-  static constexpr int Group() { return 0; }
-  static constexpr bool IsFirstOfGroup() { return true; }
+  static constexpr TAPA_INLINE int Group() { return 0; }
+  static constexpr TAPA_INLINE int GroupLane() { return 0; }
+  static constexpr TAPA_INLINE bool IsFirstOfGroup() { return true; }
   // How many hypotheses are measured side by side. Side by side they fill the
   // groups, one after the other each knows how good those before were.
   static constexpr int kNumSideBySide = 1;
@@ -450,10 +454,8 @@ TAPA_INLINE int FindConsistentViews(const SweepParams& params,
         angles.cos_triangulation <= params.filter_cos_min_triangulation &&
         angles.cos_incident > 0.0f && s->prob[m] >= params.filter_min_prob &&
         (!params.geometric || geom_cost[m] <= params.filter_geom_max_cost);
-    if (consistent) {
-      sources->SetConsistent(m);
-      ++num_consistent;
-    }
+    sources->SetConsistent(m, consistent);
+    num_consistent += consistent ? 1 : 0;
   }
   return Lanes::Sum(num_consistent);
 }

@@ -39,7 +39,9 @@ class Sources {
                   : 0.0f;
   }
 
-  void SetConsistent(int m) { consistent_[m / 8] |= 1 << (m % 8); }
+  void SetConsistent(int m, bool consistent) {
+    consistent_[m / 8] |= static_cast<uint8_t>(consistent) << (m % 8);
+  }
 
  private:
   const ProblemData& data_;
@@ -160,10 +162,8 @@ TAPA_INLINE Plane FindPlane(const PlaneSet& set, const SweepGuide& guide,
   if (set.index.empty() || set.index.data()[pixel] == PlaneSet::kNone) {
     return Plane();
   }
-  const Plane plane = PlaneAt(set.planes[set.index.data()[pixel]], ray);
-  const bool in_range =
-      plane.depth >= guide.depth_min && plane.depth <= guide.depth_max;
-  return in_range ? plane : Plane();
+  return ProposedPlane(set.planes[set.index.data()[pixel]], ray,
+                       guide.depth_min, guide.depth_max);
 }
 
 TAPA_INLINE PixelGuide GuideOf(const SweepGuide& guide, size_t pixel,
