@@ -17,11 +17,12 @@ build=${BUILD_DIR:-$root/build}
 out=${1:-$build/gpu_bundle}
 max_megabytes=60
 
-if ! grep -q '^CMAKE_CUDA_COMPILER:' "$build/CMakeCache.txt" 2>/dev/null; then
-  echo "ERROR: $build was not built with CUDA; is there nvcc 12 or newer?" >&2
+cmake --build "$build" --target cuda_device_test gpu_benchmark
+# What nvcc said about the kernels.
+if [[ ! -e $build/src/mvs/kernel_resources.txt ]]; then
+  echo "ERROR: $build was built without CUDA; is there nvcc 12 or newer?" >&2
   exit 1
 fi
-cmake --build "$build" --target cuda_device_test gpu_benchmark
 
 rm -rf "$out"
 mkdir -p "$out/lib"
