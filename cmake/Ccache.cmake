@@ -20,7 +20,7 @@ if(TAPA_CCACHE AND TAPA_CCACHE_PROGRAM)
   endif()
   set(launcher ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${base_dir}
                CCACHE_NOHASHDIR=1 ${TAPA_CCACHE_PROGRAM})
-  foreach(language C CXX)
+  foreach(language C CXX CUDA)
     if(NOT CMAKE_${language}_COMPILER_LAUNCHER)
       set(CMAKE_${language}_COMPILER_LAUNCHER ${launcher})
     endif()

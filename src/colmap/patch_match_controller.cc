@@ -8,9 +8,11 @@
 #include <thread>
 
 #include "mvs/patch_match.h"
+#include "src/colmap/engine_options.h"
 #include "src/colmap/interrupt.h"
 #include "src/colmap/option_list.h"
 #include "src/colmap/stereo_run.h"
+#include "src/colmap/workers.h"
 #include "src/files/failure.h"
 #include "util/misc.h"
 
@@ -50,11 +52,13 @@ void PatchMatchController::Run() {
   const auto stopped = [&] { return interrupt.Signal() != 0 || IsStopped(); };
   exit_status_ = EXIT_FAILURE;
   try {
-    tapa::StereoRun run(options_, location);
-    if (options_.use_gpu) {
-      std::cout << "This program has no GPU backend: the CPU is used."
-                << std::endl;
+    tapa::CheckOptions(options_);
+    const tapa::Workers workers = tapa::ChooseWorkers(
+        options_.use_gpu, options_.gpu_index, tapa::FindDevices());
+    if (!workers.message.empty()) {
+      std::cout << workers.message << std::endl;
     }
+    tapa::StereoRun run(options_, location, workers.devices);
     if (run.Run(stopped)) {
       exit_status_ = EXIT_SUCCESS;
     } else {

@@ -37,22 +37,38 @@ std::string TimeText(double seconds) {
 Progress::Progress(double total)
     : total_(total), is_terminal_(isatty(STDOUT_FILENO)) {}
 
-void Progress::BeginView(const std::string& where, const std::string& what,
-                         bool geometric, double megapixels) {
-  where_ = where;
-  what_ = what;
-  geometric_ = geometric;
-  megapixels_ = megapixels;
-  begin_ = Clock::now();
-  last_update_ = begin_;
-  cpu_begin_ = CpuSeconds();
+void Progress::CountTime() {
+  const Clock::time_point now = Clock::now();
+  const double cpu_now = CpuSeconds();
+  if (!running_.empty()) {
+    Totals& pass = passes_[geometric_];
+    pass.seconds += std::chrono::duration<double>(now - last_count_).count();
+    pass.cpu_seconds += cpu_now - last_cpu_count_;
+  }
+  last_count_ = now;
+  last_cpu_count_ = cpu_now;
 }
 
-// done: megapixels of the current view; seconds: spent on it.
-std::string Progress::TimeToGo(double done, double seconds) const {
+int Progress::BeginView(const std::string& where, const std::string& what,
+                        bool geometric, double megapixels) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  CountTime();
+  geometric_ = geometric;
+  last_update_ = last_count_;
+  running_[next_view_] = {where,      what,        geometric,
+                          megapixels, last_count_, last_cpu_count_};
+  return next_view_++;
+}
+
+std::string Progress::TimeToGo() const {
+  double done = 0;
+  double seconds = 0;
   for (const Totals& pass : passes_) {
     done += pass.megapixels;
     seconds += pass.seconds;
+  }
+  for (const auto& [number, view] : running_) {
+    done += view.share * view.megapixels;
   }
   const double share = total_ > 0 ? std::min(1.0, done / total_) : 1.0;
   return Format(
@@ -60,44 +76,57 @@ std::string Progress::TimeToGo(double done, double seconds) const {
       share > 0 ? TimeText(seconds * (1 - share) / share).c_str() : "?");
 }
 
-void Progress::Update(double share) {
+void Progress::Update(int number, double share) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  View& view = running_.at(number);
+  view.share = share;
   const Clock::time_point now = Clock::now();
   if (!is_terminal_ || now - last_update_ < kUpdateInterval) {
     return;
   }
   last_update_ = now;
-  const double seconds = std::chrono::duration<double>(now - begin_).count();
-  const double done = share * megapixels_;
+  CountTime();
+  const double seconds =
+      std::chrono::duration<double>(now - view.begin).count();
+  const double done = share * view.megapixels;
   const std::string speed =
       done > 0 ? Format(", %.1f s per megapixel", seconds / done) : "";
-  const std::string line = "\r\033[K" + TimeToGo(done, seconds) + "  " +
-                           where_ + " " + what_ + ": " +
-                           Format("%.0f %%", 100 * share) + speed;
+  const std::string line = "\r\033[K" + TimeToGo() + "  " + view.where + " " +
+                           view.what + ": " + Format("%.0f %%", 100 * share) +
+                           speed;
   // To the terminal alone: the graphical interface keeps a log of std::cout.
   std::fputs(line.c_str(), stdout);
   std::fflush(stdout);
   line_shown_ = true;
 }
 
-void Progress::EndView() {
+void Progress::EndView(int number) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  CountTime();
+  const View view = running_.at(number);
+  const bool alone = running_.size() == 1;
+  running_.erase(number);
+  passes_[view.geometric].megapixels += view.megapixels;
   const double seconds =
-      std::chrono::duration<double>(Clock::now() - begin_).count();
-  const double cpu_seconds = CpuSeconds() - cpu_begin_;
-  Totals& pass = passes_[geometric_];
-  pass.megapixels += megapixels_;
-  pass.seconds += seconds;
-  pass.cpu_seconds += cpu_seconds;
-  ClearLine();
-  std::cout << TimeToGo(0, 0) << "  " << where_ << " " << what_
-            << Format(
-                   ": %.2f megapixels in %.1f s, %.1f s (CPU %.1f s) per "
-                   "megapixel",
-                   megapixels_, seconds, seconds / megapixels_,
-                   cpu_seconds / megapixels_)
-            << std::endl;
+      std::chrono::duration<double>(last_count_ - view.begin).count();
+  // Other views' CPU time cannot be told from this one's.
+  const std::string cpu =
+      alone ? Format(" (CPU %.1f s)",
+                     (last_cpu_count_ - view.cpu_begin) / view.megapixels)
+            : "";
+  Clear();
+  std::cout << TimeToGo() << "  " << view.where << " " << view.what
+            << Format(": %.2f megapixels in %.1f s, %.1f s", view.megapixels,
+                      seconds, seconds / view.megapixels)
+            << cpu << " per megapixel" << std::endl;
 }
 
 void Progress::ClearLine() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  Clear();
+}
+
+void Progress::Clear() {
   if (line_shown_) {
     std::fputs("\r\033[K", stdout);
     std::fflush(stdout);

@@ -3,24 +3,28 @@
 
 #include <array>
 #include <chrono>
+#include <map>
+#include <mutex>
 #include <string>
 
 namespace tapa {
 
 // Tells the user how far a run is: a line per finished view and, on a terminal,
 // one that is renewed in place while a view is computed. Work is measured in
-// megapixels, times passes.
+// megapixels, times passes. Several views may be computed at a time, by threads
+// of their own.
 class Progress {
  public:
   // total: megapixels that the run has to compute.
   explicit Progress(double total);
 
-  // what: name of the view, where: its pass and number, for the user.
-  void BeginView(const std::string& where, const std::string& what,
-                 bool geometric, double megapixels);
+  // what: name of the view, where: its pass and number, for the user. Returns
+  // the number by which the functions below know the view.
+  int BeginView(const std::string& where, const std::string& what,
+                bool geometric, double megapixels);
   // share: part of the view that is done, 0 to 1.
-  void Update(double share);
-  void EndView();
+  void Update(int view, double share);
+  void EndView(int view);
   // Clears the line that is renewed in place, before something else is printed.
   void ClearLine();
 
@@ -36,21 +40,35 @@ class Progress {
     double cpu_seconds = 0;
   };
 
-  std::string TimeToGo(double done, double seconds) const;
+  struct View {
+    std::string where;
+    std::string what;
+    bool geometric;
+    double megapixels;
+    Clock::time_point begin;
+    double cpu_begin;
+    double share = 0;
+  };
+
+  // Both with the mutex held.
+  std::string TimeToGo() const;
+  void Clear();
+  // Adds the time since the last call to the pass that is running.
+  void CountTime();
 
   const double total_;
   const bool is_terminal_;
+  std::mutex mutex_;
   bool line_shown_ = false;
-  // Of the photometric and of the geometric pass.
+  // Of the photometric and of the geometric pass; time during which several
+  // views are computed counts once.
   std::array<Totals, 2> passes_;
-
-  std::string where_;
-  std::string what_;
+  std::map<int, View> running_;
+  int next_view_ = 0;
   bool geometric_ = false;
-  double megapixels_ = 0;
-  Clock::time_point begin_;
+  Clock::time_point last_count_;
+  double last_cpu_count_ = 0;
   Clock::time_point last_update_;
-  double cpu_begin_ = 0;
 };
 
 }  // namespace tapa

@@ -3,11 +3,14 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
+#include <exception>
 #include <iostream>
 #include <new>
 #include <optional>
 #include <set>
 #include <stdexcept>
+#include <thread>
 #include <unordered_set>
 
 #include "src/colmap/consistency_graph.h"
@@ -15,6 +18,7 @@
 #include "src/colmap/map_files.h"
 #include "src/colmap/tapa_debug.h"
 #include "src/files/failure.h"
+#include "src/mvs/devices.h"
 #include "src/mvs/estimate_depth.h"
 #include "src/mvs/tapa/stages.h"
 #include "util/misc.h"
@@ -49,8 +53,9 @@ void PrintWarning(const std::string& text) {
 }  // namespace
 
 StereoRun::StereoRun(const PatchMatchOptions& options,
-                     const WorkspaceLocation& location)
-    : options_(options), location_(location) {}
+                     const WorkspaceLocation& location,
+                     std::vector<int> workers)
+    : options_(options), location_(location), workers_(std::move(workers)) {}
 
 bool StereoRun::Run(const std::function<bool()>& stopped) {
   if (!Prepare(stopped)) {
@@ -394,96 +399,149 @@ bool StereoRun::IsDone(int view, Pass pass) const {
 }
 
 bool StereoRun::ComputePass(Pass pass, const std::function<bool()>& stopped) {
-  const std::string name =
-      pass == Pass::kGeometric ? "geometric " : "photometric ";
   if (!HasMaps(pass)) {
     WriteOptionsRecord(location_.RecordPath(pass == Pass::kGeometric),
                        RecordedOptions(pass));
   }
-  for (size_t i = 0; i < problems_.size(); ++i) {
+  std::atomic<size_t> next(0);
+  std::atomic<bool> halted(false);
+  std::exception_ptr error;
+  const auto work = [&](int device) {
+    const auto halt = [&] { return halted || stopped(); };
+    for (size_t i = next++; i < problems_.size() && !halted; i = next++) {
+      try {
+        if (halt() || !ComputeNumberedView(i, pass, device, halt)) {
+          halted = true;
+        }
+      } catch (...) {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        error = error ? error : std::current_exception();
+        halted = true;
+      }
+    }
+  };
+  // The calling thread is the first worker.
+  std::vector<std::thread> others;
+  for (size_t i = 1; i < workers_.size(); ++i) {
+    others.emplace_back(work, workers_[i]);
+  }
+  work(workers_[0]);
+  for (std::thread& other : others) {
+    other.join();
+  }
+  if (halted) {
+    progress_->ClearLine();
+  }
+  if (error) {
+    std::rethrow_exception(error);
+  }
+  return !halted;
+}
+
+// Returns false if stopped.
+bool StereoRun::ComputeNumberedView(size_t number, Pass pass, int device,
+                                    const std::function<bool()>& stopped) {
+  const ViewIndices& problem = problems_[number];
+  if (!IsDone(problem.reference, pass)) {
+    const bool geometric = pass == Pass::kGeometric;
+    const SceneView& view = views_[problem.reference];
+    const int progress_view = progress_->BeginView(
+        (geometric ? "geometric " : "photometric ") +
+            std::to_string(number + 1) + "/" + std::to_string(NumViews()),
+        view.name, geometric, Megapixels(view));
+    if (!ComputeView(problem, pass, device, progress_view, stopped)) {
+      return false;
+    }
+    progress_->EndView(progress_view);
+  }
+  num_done_ += pass == FinalPass();
+  return true;
+}
+
+// The engine's problem for a view, and what it borrows.
+struct StereoRun::Input {
+  Problem problem;
+  std::optional<Map<Rgb>> color;
+  std::vector<std::shared_ptr<const Map<uint8_t>>> photos;
+  std::vector<std::shared_ptr<const Map<float>>> depth_maps;
+};
+
+// Returns false if stopped.
+bool StereoRun::ReadInput(const ViewIndices& problem, bool geometric,
+                          bool color, const std::function<bool()>& stopped,
+                          Input* input) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const SceneView& reference = views_[problem.reference];
+  const auto to_view = [&](int index) {
+    View view;
+    view.camera = views_[index].camera;
+    input->photos.push_back(photos_->Get(index));
+    view.image = input->photos.back().get();
+    return view;
+  };
+
+  Problem& to = input->problem;
+  to.reference = to_view(problem.reference);
+  for (const int source : problem.sources) {
     if (stopped()) {
       return false;
     }
-    const ViewIndices& problem = problems_[i];
-    if (!IsDone(problem.reference, pass)) {
-      const SceneView& view = views_[problem.reference];
-      progress_->BeginView(
-          name + std::to_string(i + 1) + "/" + std::to_string(NumViews()),
-          view.name, pass == Pass::kGeometric, Megapixels(view));
-      const bool done = ComputeView(problem, pass, stopped);
-      if (!done) {
-        progress_->ClearLine();
-        return false;
-      }
-      progress_->EndView();
-    }
-    if (pass == FinalPass()) {
-      ++num_done_;
+    to.sources.push_back(to_view(source));
+    if (geometric) {
+      input->depth_maps.push_back(depth_maps_->Get(source));
+      to.sources.back().depth = input->depth_maps.back().get();
     }
   }
+  if (geometric) {
+    to.depth = *depth_maps_->Get(problem.reference);
+    to.normal = ReadNormalMap(
+        MapPath("normal_maps", problem.reference, Pass::kPhotometric),
+        reference.width, reference.height);
+  }
+  if (color) {
+    input->color = ReadColorPhoto(reference);
+    to.reference_color = &*input->color;
+  }
+  const bool has_range = options_.depth_min >= 0;
+  to.depth_min = has_range ? options_.depth_min : reference.depth_min;
+  to.depth_max = has_range ? options_.depth_max : reference.depth_max;
   return true;
 }
 
 // Returns false if stopped.
-bool StereoRun::ComputeView(const ViewIndices& problem, Pass pass,
+bool StereoRun::ComputeView(const ViewIndices& problem, Pass pass, int device,
+                            int progress_view,
                             const std::function<bool()>& stopped) {
   const bool geometric = pass == Pass::kGeometric;
   const SceneView& reference = views_[problem.reference];
   Options options = EngineOptions(PassOptions(pass));
   options.seed = ViewSeed(options_.seed, reference.name, geometric);
+  options.device = device;
 
-  // Keep alive what the engine borrows.
-  std::vector<std::shared_ptr<const Map<uint8_t>>> photos;
-  std::vector<std::shared_ptr<const Map<float>>> depth_maps;
-  const auto to_view = [&](int index) {
-    View view;
-    view.camera = views_[index].camera;
-    photos.push_back(photos_->Get(index));
-    view.image = photos.back().get();
-    return view;
-  };
-
-  Problem engine_problem;
-  engine_problem.reference = to_view(problem.reference);
-  for (const int source : problem.sources) {
-    if (stopped()) {
-      return false;
-    }
-    engine_problem.sources.push_back(to_view(source));
-    if (geometric) {
-      depth_maps.push_back(depth_maps_->Get(source));
-      engine_problem.sources.back().depth = depth_maps.back().get();
-    }
+  Input input;
+  if (!ReadInput(problem, geometric, options.tapa.enabled, stopped, &input)) {
+    return false;
   }
-  if (geometric) {
-    engine_problem.depth = *depth_maps_->Get(problem.reference);
-    engine_problem.normal = ReadNormalMap(
-        MapPath("normal_maps", problem.reference, Pass::kPhotometric),
-        reference.width, reference.height);
-  }
-  std::optional<Map<Rgb>> color;
-  if (options.tapa.enabled) {
-    color = ReadColorPhoto(reference);
-    engine_problem.reference_color = &*color;
-  }
-  const bool has_range = options_.depth_min >= 0;
-  engine_problem.depth_min =
-      has_range ? options_.depth_min : reference.depth_min;
-  engine_problem.depth_max =
-      has_range ? options_.depth_max : reference.depth_max;
-
   Control control;
-  control.progress = [this](double share) { progress_->Update(share); };
+  control.progress = [&](double share) {
+    progress_->Update(progress_view, share);
+  };
   control.stopped = stopped;
   TapaRecord record;
   if (WritesPictures(pass)) {
     control.record = &record;
   }
 
-  const size_t memory = EstimateDepthMemory(options, engine_problem);
+  const size_t memory = EstimateDepthMemory(options, input.problem);
   std::optional<Estimate> estimate;
   try {
-    estimate = EstimateDepth(options, std::move(engine_problem), control);
+    estimate = EstimateDepth(options, std::move(input.problem), control);
+  } catch (const DeviceError& error) {
+    progress_->ClearLine();
+    PrintWarning("View " + reference.name + " cannot be computed on GPU " +
+                 std::to_string(device) + " (" + error.what() +
+                 "): the CPU is used for it");
+    return ComputeView(problem, pass, -1, progress_view, stopped);
   } catch (const std::invalid_argument& error) {
     throw Failure("View " + reference.name +
                   " cannot be computed: " + error.what());
@@ -493,33 +551,40 @@ bool StereoRun::ComputeView(const ViewIndices& problem, Pass pass,
                   " MB of memory; lower --PatchMatchStereo.max_image_size or "
                   "cache_size");
   }
-  if (!estimate) {
-    return false;
-  }
+  return estimate &&
+         WriteView(problem, pass, *estimate, input, record,
+                   static_cast<float>(options.tapa.min_textureness), stopped);
+}
 
+// Returns false if stopped.
+bool StereoRun::WriteView(const ViewIndices& problem, Pass pass,
+                          const Estimate& estimate, const Input& input,
+                          const TapaRecord& record, float min_textureness,
+                          const std::function<bool()>& stopped) {
+  const SceneView& reference = views_[problem.reference];
   // Before the maps, so that a run that is cut off here draws them again.
   if (WritesPictures(pass)) {
     TapaView view;
     view.title = reference.name;
-    view.photograph = &*color;
+    view.photograph = &*input.color;
     view.record = &record;
-    view.depth = &estimate->depth;
-    view.normal = &estimate->normal;
-    view.min_textureness = static_cast<float>(options.tapa.min_textureness);
+    view.depth = &estimate.depth;
+    view.normal = &estimate.normal;
+    view.min_textureness = min_textureness;
+    const std::lock_guard<std::mutex> lock(mutex_);
     if (!WriteTapaPictures(
             view, TapaPictureFolder(options_.tapa_debug, reference.name),
             stopped)) {
       return false;
     }
   }
-  WriteDepthMap(MapPath("depth_maps", problem.reference, pass),
-                estimate->depth);
+  WriteDepthMap(MapPath("depth_maps", problem.reference, pass), estimate.depth);
   WriteNormalMap(MapPath("normal_maps", problem.reference, pass),
-                 estimate->normal);
+                 estimate.normal);
   if (WritesGraph(pass)) {
     WriteGraph(MapPath("consistency_graphs", problem.reference, pass),
                reference.width, reference.height,
-               ConsistencyGraph(*estimate, problem.sources));
+               ConsistencyGraph(estimate, problem.sources));
   }
   return true;
 }

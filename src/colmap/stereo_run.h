@@ -1,8 +1,10 @@
 #ifndef TAPA_SRC_COLMAP_STEREO_RUN_H_
 #define TAPA_SRC_COLMAP_STEREO_RUN_H_
 
+#include <atomic>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -13,17 +15,19 @@
 #include "src/colmap/view_cache.h"
 #include "src/colmap/views.h"
 #include "src/colmap/workspace.h"
+#include "src/mvs/estimate_depth.h"
 
 namespace tapa {
 
-// Computes the maps of all views that a workspace's configuration lists, one
-// view after the other. What can be wrong is looked for before anything is
-// computed. Maps that are there already are kept, so that a run that was
-// stopped goes on where it was, and ends with the same files.
+// Computes the maps of all views that a workspace's configuration lists, each
+// worker one view after the other. What can be wrong is looked for before
+// anything is computed. Maps that are there already are kept, so that a run
+// that was stopped goes on where it was, and ends with the same files.
 class StereoRun {
  public:
+  // workers: for each the GPU that it computes on, or -1: the CPU.
   StereoRun(const colmap::mvs::PatchMatchOptions& options,
-            const WorkspaceLocation& location);
+            const WorkspaceLocation& location, std::vector<int> workers);
 
   // Returns false if stopped() ended the run, which it can at any time; maps
   // that are finished by then stay. Throws Failure.
@@ -62,18 +66,31 @@ class StereoRun {
   bool IsDone(int view, Pass pass) const;
 
   bool ComputePass(Pass pass, const std::function<bool()>& stopped);
-  bool ComputeView(const ViewIndices& problem, Pass pass,
-                   const std::function<bool()>& stopped);
+  bool ComputeNumberedView(size_t number, Pass pass, int device,
+                           const std::function<bool()>& stopped);
+  bool ComputeView(const ViewIndices& problem, Pass pass, int device,
+                   int progress_view, const std::function<bool()>& stopped);
+  struct Input;
+  bool ReadInput(const ViewIndices& problem, bool geometric, bool color,
+                 const std::function<bool()>& stopped, Input* input);
+  bool WriteView(const ViewIndices& problem, Pass pass,
+                 const Estimate& estimate, const Input& input,
+                 const TapaRecord& record, float min_textureness,
+                 const std::function<bool()>& stopped);
 
   const colmap::mvs::PatchMatchOptions options_;
   const WorkspaceLocation location_;
+  const std::vector<int> workers_;
+  // Held while files are read or pictures written, and while workers share out
+  // views.
+  std::mutex mutex_;
   std::vector<SceneView> views_;
   std::vector<ViewIndices> problems_;
   std::unique_ptr<ViewCache<uint8_t>> photos_;
   // Of the photometric pass.
   std::unique_ptr<ViewCache<float>> depth_maps_;
   std::unique_ptr<Progress> progress_;
-  int num_done_ = 0;
+  std::atomic<int> num_done_{0};
 };
 
 }  // namespace tapa

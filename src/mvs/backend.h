@@ -49,6 +49,8 @@ class Backend {
 std::unique_ptr<Backend> MakeCpuBackend(const Options& options,
                                         const Problem& problem);
 
+// That on a GPU is made by MakeCudaBackend, devices.h.
+
 }  // namespace tapa
 
 #endif  // TAPA_SRC_MVS_BACKEND_H_

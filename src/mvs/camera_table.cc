@@ -35,7 +35,8 @@ CameraTable::CameraTable(const Problem& problem) {
   count_ = static_cast<int>(problem.sources.size());
   padded_count_ = (count_ + SourceCameras::kPadding - 1) /
                   SourceCameras::kPadding * SourceCameras::kPadding;
-  coefficients_.resize(static_cast<size_t>(kNumCoefficients) * padded_count_);
+  coefficients_.resize(static_cast<size_t>(SourceCameras::kNumCoefficients) *
+                       padded_count_);
 
   const Matrix3 K = Intrinsics(ref);
   for (int m = 0; m < padded_count_; ++m) {
@@ -64,22 +65,8 @@ CameraTable::CameraTable(const Problem& problem) {
 }
 
 SourceCameras CameraTable::sources() const {
-  SourceCameras views;
-  views.count = count_;
-  views.padded_count = padded_count_;
-  const float* from = coefficients_.data();
-  const auto take = [&] {
-    const float* row = from;
-    from += padded_count_;
-    return row;
-  };
-  std::generate_n(views.A, 9, take);
-  std::generate_n(views.b, 3, take);
-  std::generate_n(views.B, 9, take);
-  std::generate_n(views.g, 3, take);
-  std::generate_n(views.C, 3, take);
-  views.valid = take();
-  return views;
+  return ArrangeCameras(coefficients_.data(), padded_count_, count_,
+                        padded_count_);
 }
 
 }  // namespace tapa

@@ -17,10 +17,11 @@ class CameraTable {
   const RefCamera& reference() const { return reference_; }
   // Points into this table, which must outlive it.
   SourceCameras sources() const;
+  // All of them, see ArrangeCameras; arrays are padded to this many elements.
+  const std::vector<float>& coefficients() const { return coefficients_; }
+  int padded_count() const { return padded_count_; }
 
  private:
-  enum { kNumCoefficients = 9 + 3 + 9 + 3 + 3 + 1 };
-
   RefCamera reference_;
   int count_;
   int padded_count_;

@@ -8,6 +8,7 @@
 
 #include "src/mvs/backend.h"
 #include "src/mvs/camera_table.h"
+#include "src/mvs/devices.h"
 #include "src/mvs/tapa/stages.h"
 
 namespace tapa {
@@ -166,7 +167,9 @@ std::optional<Estimate> EstimateDepth(const Options& options, Problem problem,
   options.Check();
   CheckProblem(options, problem);
 
-  std::unique_ptr<Backend> backend = MakeCpuBackend(options, problem);
+  std::unique_ptr<Backend> backend = options.device < 0
+                                         ? MakeCpuBackend(options, problem)
+                                         : MakeCudaBackend(options, problem);
 
   // The first costs take about as long as one sweep.
   const int num_steps = options.num_iterations * kSweepsPerIteration + 1;

@@ -64,7 +64,8 @@ struct Control {
 
 // Estimates depth and normal of every pixel of the reference view. Returns
 // nothing if control.stopped() said so. Throws std::invalid_argument for
-// options or a problem that make no sense. The result depends neither on the
+// options or a problem that make no sense, and DeviceError (devices.h) if a GPU
+// fails, which the CPU does not. The result depends neither on the
 // number of threads nor on what was estimated before. Takes the problem by
 // value: move it in where its maps are large.
 std::optional<Estimate> EstimateDepth(const Options& options, Problem problem,

@@ -34,6 +34,15 @@ TAPA_INLINE float ExpNegative(float x) {
 #endif
 }
 
+// 1 / x, on a GPU with an error of one unit in the last place.
+TAPA_INLINE float Reciprocal(float x) {
+#if defined(__CUDA_ARCH__)
+  return __fdividef(1.0f, x);
+#else
+  return 1.0f / x;
+#endif
+}
+
 // Sine and cosine of an angle in [-0.5, 0.5], in radians, to float precision.
 TAPA_INLINE void SinCosSmall(float a, float* sin_a, float* cos_a) {
   const float s = a * a;

@@ -94,6 +94,7 @@ void Options::Check() const {
                     filter_geom_consistency_max_cost >= 0, "at least 0");
   TAPA_CHECK_OPTION(filter_min_num_consistent, filter_min_num_consistent >= 0,
                     "at least 0");
+  TAPA_CHECK_OPTION(device, device >= -1, "-1 (the CPU) or at least 0");
   TAPA_CHECK_OPTION(
       num_threads,
       num_threads == -1 || (num_threads >= 1 && num_threads <= 1024),

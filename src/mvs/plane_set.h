@@ -23,6 +23,15 @@ TAPA_INLINE Plane PlaneAt(const ScenePlane& plane, const Vec3& ray) {
   return {-plane.distance / Dot(plane.normal, ray), plane.normal};
 }
 
+// The same as a hypothesis, with depth 0 where it is outside the range of
+// depths.
+TAPA_INLINE Plane ProposedPlane(const ScenePlane& scene_plane, const Vec3& ray,
+                                float depth_min, float depth_max) {
+  const Plane plane = PlaneAt(scene_plane, ray);
+  const bool in_range = plane.depth >= depth_min && plane.depth <= depth_max;
+  return in_range ? plane : Plane();
+}
+
 // Planes, one of which every pixel may try as a hypothesis.
 struct PlaneSet {
   static constexpr uint16_t kNone = 0xFFFF;

@@ -20,6 +20,7 @@ namespace tapa {
 // 1 for real views and 0 for the padding.
 struct SourceCameras {
   static constexpr int kPadding = 16;
+  static constexpr int kNumCoefficients = 9 + 3 + 9 + 3 + 3 + 1;
 
   int count = 0;
   int padded_count = 0;
@@ -30,6 +31,26 @@ struct SourceCameras {
   const float* C[3];
   const float* valid;
 };
+
+// The cameras in a table of kNumCoefficients arrays, in the order above, each
+// `stride` elements after the one before.
+TAPA_INLINE SourceCameras ArrangeCameras(const float* table, int stride,
+                                         int count, int padded_count) {
+  SourceCameras views;
+  views.count = count;
+  views.padded_count = padded_count;
+  for (int i = 0; i < 9; ++i) {
+    views.A[i] = table + i * stride;
+    views.B[i] = table + (12 + i) * stride;
+  }
+  for (int i = 0; i < 3; ++i) {
+    views.b[i] = table + (9 + i) * stride;
+    views.g[i] = table + (21 + i) * stride;
+    views.C[i] = table + (24 + i) * stride;
+  }
+  views.valid = table + 27 * stride;
+  return views;
+}
 
 // Homogeneous coordinates in a source image of the pixels around a reference
 // pixel (row, col) on a plane: the pixel at (row + dy, col + dx) is seen at

@@ -1,6 +1,8 @@
 #ifndef TAPA_SRC_MVS_SWEEP_H_
 #define TAPA_SRC_MVS_SWEEP_H_
 
+#include <cmath>
+
 #include "src/mvs/geometric_cost.h"
 #include "src/mvs/hypotheses.h"
 #include "src/mvs/plane.h"
@@ -10,8 +12,12 @@
 #include "src/mvs/view_selection.h"
 
 // What a sweep does with one pixel. Written once for all backends: a backend
-// brings `Lanes`, which says how the loops over source views are shared out,
-// and `Sources`, which correlates patches and reads depth maps.
+// brings `Lanes`, which says how the work is shared out, and `Sources`, which
+// correlates patches and reads depth maps.
+//
+// All lanes of a pixel run the functions below together, with the same
+// arguments, and get the same results. They share the scratch: what one lane
+// wrote there, others may read after Sync().
 
 #if defined(__CUDACC__)
 #define TAPA_INDEPENDENT_ITERATIONS
@@ -21,10 +27,35 @@
 
 namespace tapa {
 
-// All loops over views run in one thread.
+// One lane: everything runs in one thread.
 struct SerialLanes {
-  static constexpr int First() { return 0; }
-  static constexpr int Step() { return 1; }
+  // A lane's share of a loop: First(), First() + Step(), ...
+  static constexpr TAPA_INLINE int First() { return 0; }
+  static constexpr TAPA_INLINE int Step() { return 1; }
+  static TAPA_INLINE void Sync() {}
+  // Sums over all lanes, and over those of a group (see below).
+  static TAPA_INLINE int Sum(int value) { return value; }
+  static TAPA_INLINE float Sum(float value) { return value; }
+  static TAPA_INLINE float GroupSum(float value) { return value; }
+  // Replaces values by their cumulative sums, whose last one is returned.
+  static TAPA_INLINE float Accumulate(int count, float* values) {
+    float sum = 0.0f;
+    for (int i = 0; i < count; ++i) {
+      sum += values[i];
+      values[i] = sum;
+    }
+    return sum;
+  }
+
+  // Correlations are shared out, too: a group of lanes measures one at a time.
+  static constexpr int kGroupSize = 1;
+  static constexpr int kNumGroups = 1;
+  static constexpr TAPA_INLINE int Group() { return 0; }
+  static constexpr TAPA_INLINE int GroupLane() { return 0; }
+  static constexpr TAPA_INLINE bool IsFirstOfGroup() { return true; }
+  // How many hypotheses are measured side by side. Side by side they fill the
+  // groups, one after the other each knows how good those before were.
+  static constexpr int kNumSideBySide = 1;
 };
 
 // Parameters of one sweep.
@@ -98,8 +129,11 @@ TAPA_INLINE int DepthIndex(int hypothesis) {
                                                                : 0;
 }
 
+// Number of random numbers that DrawViews makes at a time.
+constexpr int kDrawBlock = 32;
+
 // Working memory for one pixel: arrays over the views, padded as in
-// SourceCameras.
+// SourceCameras, if nothing else is said.
 struct PixelScratch {
   // In and out: photometric cost of the pixel's estimate in every view.
   float* cost;
@@ -110,18 +144,26 @@ struct PixelScratch {
   // In: backward message (odds).
   const float* backward;
 
-  // Cumulative distribution of the sampled views, then how often each one was
-  // drawn.
+  // Cumulative distribution of the sampled views.
   float* cdf;
+  // How often each one was drawn.
   float* num_drawn;
-  // Views drawn at least once, most often drawn first.
-  int* drawn;
-  int num_distinct;
+  // All views, those drawn most often first, of equal ones the first.
+  int* order;
+  // kDrawBlock random numbers.
+  float* uniform;
 
-  // Photometric costs of the hypotheses where computed, otherwise negative.
-  float* hypothesis_cost[kNumHypotheses];
-  // Geometric costs of the distinct depths.
-  float* geom_cost[kNumDepths];
+  // Of each hypothesis: its plane, its HomographyVector, and the cost that is
+  // added up so far.
+  Plane* plane;
+  Vec3* homography;
+  float* sum;
+  // Elements between the arrays of two hypotheses below.
+  int stride;
+  // Photometric costs at [hypothesis * stride + view], where measured.
+  float* hypothesis_cost;
+  // Geometric costs of the distinct depths at [DepthIndex * stride + view].
+  float* geom_cost;
   Projection* projection;
   float* source_depth;
 };
@@ -151,50 +193,70 @@ TAPA_INLINE void ComputeSamplingDistribution(const SweepParams& params,
                 ViewPrior::Resolution(ComputeWarp(views, m, row, col, h),
                                       params.window_radius);
   }
-  float sum = 0.0f;
-  for (int m = 0; m < views.count; ++m) {
-    sum += s->cdf[m];
-    s->cdf[m] = sum;
-  }
+  Lanes::Sync();
+  const float sum = Lanes::Accumulate(views.count, s->cdf);
   // Where no view has a chance, all have the same.
   const bool usable = sum > 0.0f;
   const float scale = usable ? 1.0f / sum : 1.0f / views.count;
-  for (int m = 0; m < views.count; ++m) {
+  for (int m = Lanes::First(); m < views.count; m += Lanes::Step()) {
     s->cdf[m] = (usable ? s->cdf[m] : m + 1.0f) * scale;
   }
 }
 
-// Draws views with replacement. The same draws serve all hypotheses; a view
-// drawn k times is measured once and counts k times.
+// Turns num_drawn, which counts the draws below each step of the distribution,
+// into the number of draws of each view. Uses up the distribution.
 template <class Lanes>
-TAPA_INLINE void DrawViews(const SweepParams& params, const Random& random,
-                           const SourceCameras& views, PixelScratch* s) {
+TAPA_INLINE void CountDraws(const SourceCameras& views, PixelScratch* s) {
+  for (int m = Lanes::First(); m < views.count; m += Lanes::Step()) {
+    s->cdf[m] = s->num_drawn[m];
+  }
+  Lanes::Sync();
+  for (int m = Lanes::First(); m < views.count; m += Lanes::Step()) {
+    s->num_drawn[m] = s->cdf[m] - (m > 0 ? s->cdf[m - 1] : 0.0f);
+  }
+  Lanes::Sync();
+}
+
+// Draws views with replacement. The same draws serve all hypotheses; a view
+// drawn k times is measured once and counts k times. Returns the number of
+// distinct views, which come first in the order.
+template <class Lanes>
+TAPA_INLINE int DrawViews(const SweepParams& params, const Random& random,
+                          const SourceCameras& views, PixelScratch* s) {
   for (int m = Lanes::First(); m < views.padded_count; m += Lanes::Step()) {
     s->num_drawn[m] = 0.0f;
   }
-  for (int i = 0; i < params.num_samples; ++i) {
-    const float u = random.Uniform(kDrawSample + i);
-    TAPA_INDEPENDENT_ITERATIONS
-    for (int m = Lanes::First(); m < views.padded_count; m += Lanes::Step()) {
-      s->num_drawn[m] += u < s->cdf[m] ? 1.0f : 0.0f;
+  for (int first = 0; first < params.num_samples; first += kDrawBlock) {
+    const int rest = params.num_samples - first;
+    const int count = rest < kDrawBlock ? rest : kDrawBlock;
+    for (int i = Lanes::First(); i < count; i += Lanes::Step()) {
+      s->uniform[i] = random.Uniform(kDrawSample + first + i);
     }
-  }
-  // So far num_drawn counts the draws below each step of the distribution.
-  s->num_distinct = 0;
-  float before = 0.0f;
-  for (int m = 0; m < views.count; ++m) {
-    const float below = s->num_drawn[m];
-    const float drawn = below - before;
-    before = below;
-    s->num_drawn[m] = drawn;
-    if (drawn > 0.0f) {
-      int i = s->num_distinct++;
-      for (; i > 0 && s->num_drawn[s->drawn[i - 1]] < drawn; --i) {
-        s->drawn[i] = s->drawn[i - 1];
+    Lanes::Sync();
+    for (int i = 0; i < count; ++i) {
+      const float u = s->uniform[i];
+      TAPA_INDEPENDENT_ITERATIONS
+      for (int m = Lanes::First(); m < views.padded_count; m += Lanes::Step()) {
+        s->num_drawn[m] += u < s->cdf[m] ? 1.0f : 0.0f;
       }
-      s->drawn[i] = m;
     }
+    Lanes::Sync();
   }
+  CountDraws<Lanes>(views, s);
+
+  int num_distinct = 0;
+  for (int m = Lanes::First(); m < views.count; m += Lanes::Step()) {
+    const float drawn = s->num_drawn[m];
+    num_distinct += drawn > 0.0f ? 1 : 0;
+    int rank = 0;
+    for (int k = 0; k < views.count; ++k) {
+      const float other = s->num_drawn[k];
+      rank += (other > drawn) | ((other == drawn) & (k < m)) ? 1 : 0;
+    }
+    s->order[rank] = m;
+  }
+  Lanes::Sync();
+  return Lanes::Sum(num_distinct);
 }
 
 template <class Lanes, class Sources>
@@ -222,42 +284,158 @@ TAPA_INLINE bool IsVisible(const Plane& plane, const Vec3& ray) {
   return plane.depth > 0.0f && Dot(plane.normal, ray) < 0.0f;
 }
 
-// Weighted geometric costs of a hypothesis, summed over the drawn views.
-TAPA_INLINE float SumGeometricCost(const SweepParams& params,
-                                   const CostWeights& weights,
-                                   const float* geom_cost,
-                                   const PixelScratch& s) {
+// Geometric costs of the depths of all hypotheses that have one.
+template <class Lanes, class Sources>
+TAPA_INLINE void ComputeGeometricCostsOfAll(const SweepParams& params,
+                                            const SourceCameras& views,
+                                            const Sources& sources, float row,
+                                            float col, PixelScratch* s) {
+  constexpr Hypothesis kDepths[kNumDepths] = {kCurrent, kPropagated, kRandom,
+                                              kFinePlane, kCoarsePlane};
+  for (int i = 0; i < kNumDepths; ++i) {
+    const float depth = s->plane[kDepths[i]].depth;
+    if (depth > 0.0f) {
+      ComputeGeometricCosts<Lanes>(params, views, sources, row, col, depth, s,
+                                   s->geom_cost + i * s->stride);
+    }
+  }
+  Lanes::Sync();
+}
+
+// Weighted geometric costs of hypothesis i, summed over the drawn views.
+TAPA_INLINE float SumGeometricCosts(const SweepParams& params,
+                                    const CostWeights& weights, int i,
+                                    int num_distinct, const PixelScratch& s) {
+  if (!params.geometric) {
+    return 0.0f;
+  }
+  const float* geom_cost = s.geom_cost + DepthIndex(i) * s.stride;
   const float weight = weights.geometric * params.geom_weight;
   float sum = 0.0f;
-  for (int k = 0; k < s.num_distinct; ++k) {
-    const int m = s.drawn[k];
+  for (int k = 0; k < num_distinct; ++k) {
+    const int m = s.order[k];
     sum += s.num_drawn[m] * weight * geom_cost[m];
   }
   return sum;
 }
 
-// Summed cost of hypothesis i over the drawn views. Costs are not negative, so
-// the sum only grows: once it exceeds `limit` the hypothesis cannot win any
-// more, and the rest of its views need not be measured.
-template <class Sources>
-TAPA_INLINE float SumCost(const SweepParams& params, const RefCamera& camera,
-                          const SourceCameras& views, Sources& sources,
-                          float row, float col, const Plane& plane,
-                          const Vec3& ray, int i, const CostWeights& weights,
-                          float limit, PixelScratch* s) {
-  float sum =
-      params.geometric
-          ? SumGeometricCost(params, weights, s->geom_cost[DepthIndex(i)], *s)
-          : 0.0f;
-  const Vec3 h = HomographyVector(camera, plane, ray);
-  for (int k = 0; k < s->num_distinct && sum <= limit; ++k) {
-    const int m = s->drawn[k];
-    const float cost = DecodeCost(
-        EncodeCost(sources.Cost(m, ComputeWarp(views, m, row, col, h))));
-    s->hypothesis_cost[i][m] = cost;
-    sum += s->num_drawn[m] * weights.photometric * cost;
+// The sum so far and the photometric costs of the views at [begin, end) of the
+// order.
+TAPA_INLINE float AddPhotometricCosts(const CostWeights& weights,
+                                      const float* cost, int begin, int end,
+                                      float sum, const PixelScratch& s) {
+  for (int k = begin; k < end; ++k) {
+    const int m = s.order[k];
+    sum += s.num_drawn[m] * weights.photometric * cost[m];
   }
   return sum;
+}
+
+// A few hypotheses.
+struct HypothesisList {
+  static_assert(kNumHypotheses <= 8, "there are four bits for each");
+  uint32_t items = 0;
+  int count = 0;
+
+  TAPA_INLINE void Add(int hypothesis) {
+    items |= static_cast<uint32_t>(hypothesis) << (4 * count);
+    ++count;
+  }
+  TAPA_INLINE int At(int i) const { return (items >> (4 * i)) & 15u; }
+};
+
+// Measures the photometric costs of the listed hypotheses in the views at
+// [begin, end) of the order.
+template <class Lanes, class Sources>
+TAPA_INLINE void MeasureCosts(const SourceCameras& views, Sources& sources,
+                              float row, float col, const HypothesisList& list,
+                              int begin, int end, PixelScratch* s) {
+  const int count = list.count * (end - begin);
+  for (int n = Lanes::Group(); n < count; n += Lanes::kNumGroups) {
+    const int i = list.At(n % list.count);
+    const int m = s->order[begin + n / list.count];
+    const Warp warp = ComputeWarp(views, m, row, col, s->homography[i]);
+    const float cost = DecodeCost(EncodeCost(sources.Cost(m, warp)));
+    if (Lanes::IsFirstOfGroup()) {
+      s->hypothesis_cost[i * s->stride + m] = cost;
+    }
+  }
+  Lanes::Sync();
+}
+
+// Adds up, in s->sum, the costs of hypotheses [first, last) over the drawn
+// views. Costs are not negative, so a sum only grows: once it exceeds `limit`
+// the hypothesis cannot win any more, and the rest of its views is not
+// measured.
+template <class Lanes, class Sources>
+TAPA_INLINE void SumCosts(const SweepParams& params, const RefCamera& camera,
+                          const SourceCameras& views, Sources& sources,
+                          float row, float col, const Vec3& ray, int first,
+                          int last, const TextureWeights& weights, float limit,
+                          int num_distinct, PixelScratch* s) {
+  for (int i = first + Lanes::First(); i < last; i += Lanes::Step()) {
+    const CostWeights& w = i < kFinePlane ? weights.own : weights.planar;
+    s->homography[i] = HomographyVector(camera, s->plane[i], ray);
+    s->sum[i] = IsVisible(s->plane[i], ray)
+                    ? SumGeometricCosts(params, w, i, num_distinct, *s)
+                    : INFINITY;
+  }
+  int begin = 0;
+  while (true) {
+    Lanes::Sync();
+    HypothesisList running;
+    for (int i = first; i < last; ++i) {
+      if (s->sum[i] <= limit) {
+        running.Add(i);
+      }
+    }
+    if (running.count == 0 || begin == num_distinct) {
+      return;
+    }
+    // As many views as it takes to keep all groups busy.
+    const int num_views = running.count < Lanes::kNumGroups
+                              ? Lanes::kNumGroups / running.count
+                              : 1;
+    const int end =
+        begin + num_views < num_distinct ? begin + num_views : num_distinct;
+    MeasureCosts<Lanes>(views, sources, row, col, running, begin, end, s);
+    for (int n = Lanes::First(); n < running.count; n += Lanes::Step()) {
+      const int i = running.At(n);
+      s->sum[i] = AddPhotometricCosts(
+          i < kFinePlane ? weights.own : weights.planar,
+          s->hypothesis_cost + i * s->stride, begin, end, s->sum[i], *s);
+    }
+    begin = end;
+  }
+}
+
+// The hypothesis of the smallest cost.
+template <class Lanes, class Sources>
+TAPA_INLINE int ChooseHypothesis(const SweepParams& params,
+                                 const RefCamera& camera,
+                                 const SourceCameras& views, Sources& sources,
+                                 float row, float col, const Vec3& ray,
+                                 const TextureWeights& weights,
+                                 int num_distinct, PixelScratch* s) {
+  int best = kCurrent;
+  // Added up like those of the other hypotheses, so that equal costs are equal.
+  float best_cost = AddPhotometricCosts(
+      weights.own, s->cost, 0, num_distinct,
+      SumGeometricCosts(params, weights.own, kCurrent, num_distinct, *s), *s);
+  for (int first = kCurrent + 1; first < kNumHypotheses;
+       first += Lanes::kNumSideBySide) {
+    const int end = first + Lanes::kNumSideBySide;
+    const int last = end < kNumHypotheses ? end : +kNumHypotheses;
+    SumCosts<Lanes>(params, camera, views, sources, row, col, ray, first, last,
+                    weights, best_cost, num_distinct, s);
+    for (int i = first; i < last; ++i) {
+      if (s->sum[i] <= best_cost) {
+        best = i;
+        best_cost = s->sum[i];
+      }
+    }
+  }
+  return best;
 }
 
 // Counts the views that support the estimate and reports each one.
@@ -276,12 +454,29 @@ TAPA_INLINE int FindConsistentViews(const SweepParams& params,
         angles.cos_triangulation <= params.filter_cos_min_triangulation &&
         angles.cos_incident > 0.0f && s->prob[m] >= params.filter_min_prob &&
         (!params.geometric || geom_cost[m] <= params.filter_geom_max_cost);
-    if (consistent) {
-      sources->SetConsistent(m);
-      ++num_consistent;
-    }
+    sources->SetConsistent(m, consistent);
+    num_consistent += consistent ? 1 : 0;
   }
-  return num_consistent;
+  return Lanes::Sum(num_consistent);
+}
+
+// The planes of all hypotheses. What is no hypothesis has no visible plane.
+TAPA_INLINE void MakeHypotheses(const SweepParams& params, const Random& random,
+                                const Plane& current, const Plane& previous,
+                                const Vec3& previous_ray, const Vec3& ray,
+                                const PixelGuide& guide, Plane* planes) {
+  const float random_depth =
+      PerturbDepth(random, params.perturbation, current.depth);
+  const Vec3 random_normal =
+      PerturbNormal(random, params.perturbation, current.normal, ray);
+  planes[kCurrent] = current;
+  planes[kPropagated] = {PropagateDepth(previous, previous_ray, ray),
+                         previous.normal};
+  planes[kRandom] = {random_depth, random_normal};
+  planes[kRandomNormal] = {current.depth, random_normal};
+  planes[kRandomDepth] = {random_depth, current.normal};
+  planes[kFinePlane] = guide.fine;
+  planes[kCoarsePlane] = guide.coarse;
 }
 
 // Chooses among the hypotheses of the pixel and updates its costs, messages and
@@ -299,67 +494,28 @@ TAPA_INLINE Choice SweepPixel(const SweepParams& params,
   const Vec3 ray = camera.Ray(row, col);
   ComputeSamplingDistribution<Lanes>(params, camera, views, row, col, current,
                                      ray, s);
-  DrawViews<Lanes>(params, random, views, s);
+  const int num_distinct = DrawViews<Lanes>(params, random, views, s);
 
-  const float random_depth =
-      PerturbDepth(random, params.perturbation, current.depth);
-  const Vec3 random_normal =
-      PerturbNormal(random, params.perturbation, current.normal, ray);
-  const Plane planes[kNumHypotheses] = {
-      current,
-      {PropagateDepth(previous, previous_ray, ray), previous.normal},
-      {random_depth, random_normal},
-      {current.depth, random_normal},
-      {random_depth, current.normal},
-      guide.fine,
-      guide.coarse};
-
+  if (Lanes::First() == 0) {
+    MakeHypotheses(params, random, current, previous, previous_ray, ray, guide,
+                   s->plane);
+  }
+  Lanes::Sync();
   if (params.geometric) {
-    constexpr Hypothesis kDepths[kNumDepths] = {kCurrent, kPropagated, kRandom,
-                                                kFinePlane, kCoarsePlane};
-    for (int i = 0; i < kNumDepths; ++i) {
-      const float depth = planes[kDepths[i]].depth;
-      if (depth > 0.0f) {
-        ComputeGeometricCosts<Lanes>(params, views, sources, row, col, depth, s,
-                                     s->geom_cost[i]);
-      }
-    }
+    ComputeGeometricCostsOfAll<Lanes>(params, views, sources, row, col, s);
   }
-
-  int best = kCurrent;
-  const CostWeights& own = guide.weights.own;
-  // Added up like those of the other hypotheses, so that equal costs are equal.
-  float best_cost = params.geometric
-                        ? SumGeometricCost(params, own, s->geom_cost[0], *s)
-                        : 0.0f;
-  for (int k = 0; k < s->num_distinct; ++k) {
-    const int m = s->drawn[k];
-    best_cost += s->num_drawn[m] * own.photometric * s->cost[m];
-  }
-  for (int i = kCurrent + 1; i < kNumHypotheses; ++i) {
-    if (!IsVisible(planes[i], ray)) {
-      continue;
-    }
-    for (int m = Lanes::First(); m < views.count; m += Lanes::Step()) {
-      s->hypothesis_cost[i][m] = -1.0f;
-    }
-    const CostWeights& weights = i < kFinePlane ? own : guide.weights.planar;
-    const float cost = SumCost(params, camera, views, sources, row, col,
-                               planes[i], ray, i, weights, best_cost, s);
-    if (cost <= best_cost) {
-      best = i;
-      best_cost = cost;
-    }
-  }
-
-  const Plane chosen = planes[best];
+  const int best =
+      ChooseHypothesis<Lanes>(params, camera, views, sources, row, col, ray,
+                              guide.weights, num_distinct, s);
+  const Plane chosen = s->plane[best];
   if (best != kCurrent) {
-    const Vec3 h = HomographyVector(camera, chosen, ray);
-    for (int m = 0; m < views.count; ++m) {
-      const float known = s->hypothesis_cost[best][m];
-      s->cost[m] = known >= 0.0f ? known
-                                 : DecodeCost(EncodeCost(sources.Cost(
-                                       m, ComputeWarp(views, m, row, col, h))));
+    // In the drawn views it is measured already.
+    HypothesisList list;
+    list.Add(best);
+    MeasureCosts<Lanes>(views, sources, row, col, list, num_distinct,
+                        views.count, s);
+    for (int m = Lanes::First(); m < views.count; m += Lanes::Step()) {
+      s->cost[m] = s->hypothesis_cost[best * s->stride + m];
     }
   }
 
@@ -375,7 +531,8 @@ TAPA_INLINE Choice SweepPixel(const SweepParams& params,
   bool keep = true;
   if (params.filter) {
     keep = FindConsistentViews<Lanes>(
-               params, views, chosen, ray, s->geom_cost[DepthIndex(best)], s,
+               params, views, chosen, ray,
+               s->geom_cost + DepthIndex(best) * s->stride, s,
                &sources) >= params.filter_min_num_consistent;
   }
   return {chosen, static_cast<Hypothesis>(best), keep};

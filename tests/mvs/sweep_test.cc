@@ -13,6 +13,7 @@
 #include "src/mvs/tapa/textureness.h"
 #include "src/mvs/texture_weights.h"
 #include "tests/mvs/reference.h"
+#include "tests/mvs/sweep_start.h"
 #include "tests/mvs/synthetic.h"
 
 namespace tapa {
@@ -147,22 +148,6 @@ TEST(GeometricCost, AgreesWithReference) {
   EXPECT_GT(num_below_max, 1000);
 }
 
-// Parameters of one sweep, as the schedule would set them.
-SweepParams MakeParams(const Options& options, int index) {
-  SweepParams params;
-  params.index = index;
-  params.seed = options.seed;
-  params.perturbation =
-      static_cast<float>(std::pow(2.0, -(index / 4 + index % 4 / 4.0)));
-  params.prev_prob_weight =
-      static_cast<float>(index) / (4 * options.num_iterations);
-  params.selection = ViewSelection::FromSigma(options.ncc_sigma);
-  params.prior = ViewPrior::FromAngles(options.min_triangulation_angle,
-                                       options.incident_angle_sigma);
-  params.geometric = options.geom_consistency;
-  return params;
-}
-
 struct SweepCase {
   bool geometric;
   bool guided;
@@ -173,59 +158,6 @@ struct SweepCase {
          << (c.guided ? " guided" : "") << " sweep " << c.index;
   }
 };
-
-ScenePlane PlaneThrough(float depth, const Vec3& normal) {
-  const float norm = std::sqrt(Dot(normal, normal));
-  return {(1 / norm) * normal, -depth * normal.z / norm};
-}
-
-// Every pixel draws one of them or, at times, none.
-PlaneSet DrawAtRandom(const std::vector<ScenePlane>& planes, int width,
-                      int height, std::mt19937* random) {
-  PlaneSet set;
-  set.planes = planes;
-  set.index = Map<uint16_t>(width, height);
-  for (size_t i = 0; i < set.index.size(); ++i) {
-    const size_t draw = (*random)() % (planes.size() + 1);
-    set.index.data()[i] =
-        draw < planes.size() ? static_cast<uint16_t>(draw) : PlaneSet::kNone;
-  }
-  return set;
-}
-
-// Planes near the truth and far from it, out of the range of depths and turned
-// away.
-SweepGuide MakeGuide(const SyntheticPlane& scene, std::mt19937* random) {
-  const Problem& problem = scene.problem();
-  const Map<uint8_t>& image = *problem.reference.image;
-  const float depth = 4.0f;
-  const Vec3 normal = scene.normal();
-  SweepGuide guide;
-  guide.depth_min = problem.depth_min;
-  guide.depth_max = problem.depth_max;
-  guide.weight_range = 0.2f;
-  guide.textureness = Map<float>(image.width(), image.height());
-  for (size_t i = 0; i < guide.textureness.size(); ++i) {
-    guide.textureness.data()[i] = 0.2f + (*random)() % 1000 * 0.0008f;
-  }
-  const ScenePlane truth = PlaneThrough(depth, normal);
-  guide.fine = DrawAtRandom({truth,
-                             PlaneThrough(1.002f * depth, normal),
-                             PlaneThrough(1.2f * depth, normal),
-                             PlaneThrough(depth, {-0.2f, 0.3f, -1}),
-                             PlaneThrough(0.4f * depth, normal),
-                             PlaneThrough(3 * depth, normal),
-                             {-truth.normal, -truth.distance},
-                             {truth.normal, -truth.distance}},
-                            image.width(), image.height(), random);
-  guide.coarse = DrawAtRandom({PlaneThrough(0.999f * depth, normal),
-                               truth,
-                               PlaneThrough(depth, {0.25f, -0.1f, -1}),
-                               PlaneThrough(1.4f * depth, {0, 0, -1}),
-                               {{1, 0, 0}, 1e-6f}},
-                              image.width(), image.height(), random);
-  return guide;
-}
 
 // A state at which sweeps start, in the engine's form.
 SweepState MakeState(const ProblemData& data, const Map<float>& depth,
@@ -247,31 +179,6 @@ void RunSweep(const ProblemData& data, const SweepParams& params,
   SweepLines(
       data, params, guide, direction, 0, NumLines(data, direction),
       [] { return true; }, state, scratch);
-}
-
-struct Start {
-  Map<float> depth;
-  Map<Vec3> normal;
-};
-
-// Half of the pixels near the truth, so that propagation has something to
-// spread.
-Start StartNearTruth(const SyntheticPlane& scene) {
-  const Map<float>& truth = scene.depth();
-  Start start = {Map<float>(truth.width(), truth.height()),
-                 Map<Vec3>(truth.width(), truth.height())};
-  const RefCamera camera = CameraTable(scene.problem()).reference();
-  std::mt19937 random(4);
-  std::uniform_real_distribution<float> factors(0.7f, 1.4f);
-  for (int row = 0; row < truth.height(); ++row) {
-    for (int col = 0; col < truth.width(); ++col) {
-      start.depth.At(row, col) =
-          truth.At(row, col) * (random() % 2 ? factors(random) : 1.001f);
-      start.normal.At(row, col) =
-          RandomNormal(Random(random(), 0, 0), camera.Ray(row, col));
-    }
-  }
-  return start;
 }
 
 class SweepTest : public testing::TestWithParam<SweepCase> {};
@@ -304,7 +211,7 @@ TEST_P(SweepTest, MakesTheChoicesOfTheReference) {
   SweepState actual = MakeState(data, depth, normal, &scratch);
   const auto first_cost = actual.cost;
   const auto direction = static_cast<Direction>(GetParam().index % 4);
-  RunSweep(data, MakeParams(options, GetParam().index), guide, &actual,
+  RunSweep(data, MakeSweepParams(options, GetParam().index), guide, &actual,
            &scratch);
 
   int num_same = 0;
@@ -454,8 +361,8 @@ TEST(Sweep, WithoutPlanesAndWeightsIsThePlainAlgorithm) {
     SweepScratch scratch(data);
     const auto sweep_twice = [&](const SweepGuide& guide) {
       SweepState state = MakeState(data, depth, normal, &scratch);
-      RunSweep(data, MakeParams(options, 4), guide, &state, &scratch);
-      RunSweep(data, MakeParams(options, 5), guide, &state, &scratch);
+      RunSweep(data, MakeSweepParams(options, 4), guide, &state, &scratch);
+      RunSweep(data, MakeSweepParams(options, 5), guide, &state, &scratch);
       return state;
     };
     const SweepState plain = sweep_twice(SweepGuide());
@@ -509,7 +416,7 @@ TEST(Sweep, RangeOfDepthsIncludesItsEnds) {
     guide.fine.planes = {{{0, 0, -1}, distance}};
     guide.fine.index = Map<uint16_t>(48, 40, uint16_t{0});
     SweepState state = MakeState(data, depth, normal, &scratch);
-    RunSweep(data, MakeParams(options, 0), guide, &state, &scratch);
+    RunSweep(data, MakeSweepParams(options, 0), guide, &state, &scratch);
     const bool in_range = distance >= 2 && distance <= 8;
     EXPECT_EQ(state.chosen.At(20, 24) == kFinePlane, in_range) << distance;
   }
@@ -556,7 +463,7 @@ void ExpectPlanesToWinOnAFlatPatch(bool geometric) {
         guide.textureness = Map<float>();
       }
       SweepState state = MakeState(data, depth, normal, &scratch);
-      RunSweep(data, MakeParams(options, index), guide, &state, &scratch);
+      RunSweep(data, MakeSweepParams(options, index), guide, &state, &scratch);
 
       const RefCamera camera = CameraTable(problem).reference();
       int num_wrong = 0;
@@ -634,25 +541,33 @@ TEST(Sweep, DrawsViewsInProportionToTheirProbability) {
   const SyntheticPlane scene{SyntheticOptions()};
   const CameraTable cameras(scene.problem());
   const SourceCameras views = cameras.sources();
+  const std::vector<float> steps = {0.1f, 0.1f, 0.7f, 1.0f};
   std::vector<float> cdf(views.padded_count, 1.0f);
-  const float steps[] = {0.1f, 0.1f, 0.7f, 1.0f};
-  std::copy(steps, steps + 4, cdf.begin());
   std::vector<float> num_drawn(views.padded_count);
-  std::vector<int> drawn(views.padded_count);
+  std::vector<int> order(views.padded_count);
+  std::vector<float> uniform(kDrawBlock);
   PixelScratch s = {};
   s.cdf = cdf.data();
   s.num_drawn = num_drawn.data();
-  s.drawn = drawn.data();
+  s.order = order.data();
+  s.uniform = uniform.data();
   double total[4] = {};
   for (int i = 0; i < 20000; ++i) {
-    DrawViews<SerialLanes>(SweepParams(), Random(1, i, 0), views, &s);
+    std::copy(steps.begin(), steps.end(), cdf.begin());
+    const int num_distinct =
+        DrawViews<SerialLanes>(SweepParams(), Random(1, i, 0), views, &s);
     double sum = 0;
-    for (int k = 0; k < s.num_distinct; ++k) {
-      sum += num_drawn[drawn[k]];
-      total[drawn[k]] += num_drawn[drawn[k]];
-      EXPECT_TRUE(k == 0 || num_drawn[drawn[k]] <= num_drawn[drawn[k - 1]]);
+    int seen = 0;
+    for (int k = 0; k < 4; ++k) {
+      const float drawn = num_drawn[order[k]];
+      EXPECT_EQ(drawn > 0, k < num_distinct);
+      EXPECT_TRUE(k == 0 || drawn <= num_drawn[order[k - 1]]);
+      sum += drawn;
+      total[order[k]] += drawn;
+      seen |= 1 << order[k];
     }
     ASSERT_EQ(sum, 15);
+    ASSERT_EQ(seen, 15) << "not an order of all views";
   }
   EXPECT_NEAR(total[0] / 300000, 0.1, 0.005);
   EXPECT_EQ(total[1], 0);

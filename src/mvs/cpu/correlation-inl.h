@@ -11,13 +11,12 @@
 
 #include <hwy/highway.h>
 
-#include <cmath>
 #include <cstring>
 
+#include "src/mvs/correlation.h"
 #include "src/mvs/cpu/source_image.h"
 #include "src/mvs/cpu/window.h"
 #include "src/mvs/source_cameras.h"
-#include "src/mvs/view_selection.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tapa {
@@ -28,9 +27,6 @@ namespace hn = hwy::HWY_NAMESPACE;
 using FloatTag = hn::CappedTag<float, 16>;
 using FloatVec = hn::Vec<FloatTag>;
 using IntTag = hn::RebindToSigned<FloatTag>;
-
-// Variance (of intensities 0 to 1) below which a patch cannot be correlated.
-constexpr float kMinVariance = 1e-5f * 255.0f * 255.0f;
 
 HWY_INLINE void CopyIntensities(const Window& window, const RefImage& image,
                                 int row, int col, uint8_t* HWY_RESTRICT to) {
@@ -143,14 +139,6 @@ HWY_INLINE FloatVec SampleBilinear(const SourceImage& source, FloatVec u,
   return hn::MulAdd(fraction_v, hn::Sub(bottom, top), hn::Sub(top, mean));
 }
 
-// Weighted sums over the samples of (source - mean), its square, and its
-// product with the centred reference.
-struct Moments {
-  float sum;
-  float squared_sum;
-  float product_sum;
-};
-
 // With kInside all samples are known to lie inside the image's border.
 template <bool kInside>
 HWY_INLINE Moments SumSamples(const Window& window, const Patch& patch,
@@ -239,13 +227,7 @@ HWY_NOINLINE HWY_ATTR float CorrelationCost(const Window& window,
   const Moments moments = WindowIsInside(window, source, warp)
                               ? SumSamples<true>(window, patch, source, grid)
                               : SumSamples<false>(window, patch, source, grid);
-  const float variance = moments.squared_sum - moments.sum * moments.sum;
-  if (!(variance >= kMinVariance)) {
-    return kMaxCost;
-  }
-  const float cost =
-      1.0f - moments.product_sum / std::sqrt(patch.variance * variance);
-  return cost < 0.0f ? 0.0f : cost > kMaxCost ? kMaxCost : cost;
+  return CostOfMoments(patch.variance, moments);
 }
 
 // NOLINTNEXTLINE(google-readability-namespace-comments)

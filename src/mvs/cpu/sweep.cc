@@ -39,7 +39,9 @@ class Sources {
                   : 0.0f;
   }
 
-  void SetConsistent(int m) { consistent_[m / 8] |= 1 << (m % 8); }
+  void SetConsistent(int m, bool consistent) {
+    consistent_[m / 8] |= static_cast<uint8_t>(consistent) << (m % 8);
+  }
 
  private:
   const ProblemData& data_;
@@ -160,10 +162,8 @@ TAPA_INLINE Plane FindPlane(const PlaneSet& set, const SweepGuide& guide,
   if (set.index.empty() || set.index.data()[pixel] == PlaneSet::kNone) {
     return Plane();
   }
-  const Plane plane = PlaneAt(set.planes[set.index.data()[pixel]], ray);
-  const bool in_range =
-      plane.depth >= guide.depth_min && plane.depth <= guide.depth_max;
-  return in_range ? plane : Plane();
+  return ProposedPlane(set.planes[set.index.data()[pixel]], ray,
+                       guide.depth_min, guide.depth_max);
 }
 
 TAPA_INLINE PixelGuide GuideOf(const SweepGuide& guide, size_t pixel,
@@ -314,24 +314,29 @@ SweepScratch::SweepScratch(const ProblemData& data) : patch(data.window) {
   const size_t count = views.padded_count;
   backward = MakeAligned<float>(std::max(data.width, data.height) * count);
   arrays_ = MakeAligned<float>(kNumScratchArrays * count);
-  drawn_.resize(count);
+  order_.resize(count);
   projection_.resize(count);
 
   float* next = arrays_.get();
-  const auto take = [&] {
-    float* array = next;
-    next += count;
-    return array;
+  const auto take = [&](int num_arrays) {
+    float* arrays = next;
+    next += num_arrays * count;
+    return arrays;
   };
   pixel = PixelScratch();
   for (float** array : {&pixel.cost, &pixel.prob, &pixel.forward, &pixel.cdf,
                         &pixel.num_drawn, &pixel.source_depth}) {
-    *array = take();
+    *array = take(1);
   }
-  std::generate_n(pixel.hypothesis_cost, +kNumHypotheses, take);
-  std::generate_n(pixel.geom_cost, kNumDepths, take);
-  pixel.drawn = drawn_.data();
+  pixel.hypothesis_cost = take(kNumHypotheses);
+  pixel.geom_cost = take(kNumDepths);
+  pixel.stride = views.padded_count;
+  pixel.order = order_.data();
   pixel.projection = projection_.data();
+  pixel.uniform = uniform_.data();
+  pixel.plane = planes_.data();
+  pixel.homography = homographies_.data();
+  pixel.sum = sums_.data();
 }
 
 void SweepLines(const ProblemData& data, const SweepParams& params,

@@ -1,6 +1,7 @@
 #ifndef TAPA_SRC_MVS_CPU_SWEEP_H_
 #define TAPA_SRC_MVS_CPU_SWEEP_H_
 
+#include <array>
 #include <functional>
 #include <vector>
 
@@ -9,10 +10,12 @@
 
 namespace tapa {
 
-// Working memory of one thread.
+// Working memory of one thread. Stays where it is: `pixel` points into it.
 class SweepScratch {
  public:
   explicit SweepScratch(const ProblemData& data);
+  SweepScratch(const SweepScratch&) = delete;
+  SweepScratch& operator=(const SweepScratch&) = delete;
 
   Patch patch;
   PixelScratch pixel;
@@ -21,8 +24,12 @@ class SweepScratch {
 
  private:
   hwy::AlignedFreeUniquePtr<float[]> arrays_;
-  std::vector<int> drawn_;
+  std::vector<int> order_;
   std::vector<Projection> projection_;
+  std::array<float, kDrawBlock> uniform_;
+  std::array<Plane, kNumHypotheses> planes_;
+  std::array<Vec3, kNumHypotheses> homographies_;
+  std::array<float, kNumHypotheses> sums_;
 };
 
 // The four directions of an iteration, in this order. Lines are columns in

@@ -1,0 +1,423 @@
+#include "src/mvs/backend.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "src/mvs/camera_table.h"
+#include "src/mvs/cuda/kernels.h"
+#include "src/mvs/cuda/memory.h"
+#include "src/mvs/cuda/memory_plan.h"
+#include "src/mvs/devices.h"
+
+namespace tapa {
+namespace {
+
+// Lines are shared out among streams: while the last warps of one end a piece,
+// those of others go on.
+constexpr int kNumStreams = 4;
+// Launches of a stream that wait in line while the host looks whether to go on.
+constexpr int kQueueLength = 4;
+// Rows of a launch that computes first costs.
+constexpr int kRowsPerLaunch = 32;
+
+size_t UseDevice(int device) {
+  CheckCuda(cudaSetDevice(device), "choosing the GPU");
+  size_t free_bytes = 0;
+  size_t total_bytes = 0;
+  CheckCuda(cudaMemGetInfo(&free_bytes, &total_bytes),
+            "asking for the GPU's memory");
+  return free_bytes;
+}
+
+std::string Megabytes(size_t bytes) {
+  return std::to_string((bytes + (1 << 20) - 1) >> 20) + " MB";
+}
+
+// The images of a problem as textures.
+class ProblemTextures {
+ public:
+  ProblemTextures(const Problem& problem, const MemoryPlan& plan)
+      : reference_(plan.width, plan.height, 0),
+        sources_(plan.max_source_width, plan.max_source_height,
+                 plan.num_views) {
+    reference_.Upload(*problem.reference.image, 0);
+    if (plan.geometric) {
+      depths_ = DeviceImage<float>(plan.max_source_width,
+                                   plan.max_source_height, plan.num_views);
+      depth_texture_ = Texture(depths_.array(), Reading::kNearest);
+    }
+    for (int m = 0; m < plan.num_views; ++m) {
+      sources_.Upload(*problem.sources[m].image, m);
+      if (plan.geometric) {
+        depths_.Upload(*problem.sources[m].depth, m);
+      }
+    }
+    reference_texture_ = Texture(reference_.array(), Reading::kNearest);
+    source_texture_ = Texture(sources_.array(), Reading::kBilinear);
+    exact_source_texture_ = Texture(sources_.array(), Reading::kNearest);
+  }
+
+  TextureObjects objects() const {
+    return {reference_texture_.object(), source_texture_.object(),
+            exact_source_texture_.object(), depth_texture_.object()};
+  }
+
+ private:
+  // Textures go before the images that they read.
+  DeviceImage<uint8_t> reference_;
+  DeviceImage<uint8_t> sources_;
+  DeviceImage<float> depths_;
+  Texture reference_texture_;
+  Texture source_texture_;
+  Texture exact_source_texture_;
+  Texture depth_texture_;
+};
+
+// A PlaneSet in device memory.
+class DevicePlanes {
+ public:
+  DevicePlanes() = default;
+  explicit DevicePlanes(size_t num_pixels) : index_(num_pixels) {}
+
+  void Set(const PlaneSet& set) {
+    is_set_ = !set.index.empty();
+    if (!is_set_) {
+      return;
+    }
+    if (set.planes.size() > planes_.size()) {
+      planes_ = DeviceArray<ScenePlane>(set.planes.size());
+    }
+    planes_.Upload(set.planes.data(), set.planes.size());
+    index_.Upload(set.index.data(), set.index.size());
+  }
+
+  PlaneTable table() const {
+    return is_set_ ? PlaneTable{planes_.data(), index_.data()} : PlaneTable();
+  }
+
+ private:
+  bool is_set_ = false;
+  DeviceArray<ScenePlane> planes_;
+  DeviceArray<uint16_t> index_;
+};
+
+KernelKind ChooseKernel(const Options& options, int num_views) {
+  const WindowShape window = WindowShape::FromOptions(options);
+  const bool common = CommonSizes::Fits(window, num_views);
+  if (options.naive_kernel && !common) {
+    throw std::invalid_argument(
+        "the naive kernel is made for 11 by 11 samples and at most 32 views");
+  }
+  return options.naive_kernel       ? KernelKind::kNaive
+         : options.precise_textures ? KernelKind::kPrecise
+         : common                   ? KernelKind::kCommon
+                                    : KernelKind::kAny;
+}
+
+using Clock = std::chrono::steady_clock;
+
+double SecondsSince(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+void DescribeDevice(int device, DeviceProfile* profile) {
+  cudaDeviceProp properties;
+  CheckCuda(cudaGetDeviceProperties(&properties, device),
+            "asking for the GPU's properties");
+  int kilohertz = 0;
+  CheckCuda(cudaDeviceGetAttribute(&kilohertz, cudaDevAttrClockRate, device),
+            "asking for the GPU's clock");
+  profile->name = properties.name;
+  profile->num_multiprocessors = properties.multiProcessorCount;
+  profile->clock_hz = 1e3 * kilohertz;
+}
+
+void DescribeKernel(const KernelLaunch& launch, DeviceProfile* profile) {
+  const KernelResources resources = SweepResources(launch);
+  profile->registers = resources.registers;
+  profile->shared_bytes = resources.shared_bytes;
+  profile->occupancy = resources.occupancy;
+  profile->resident_lines = resources.resident_lines;
+}
+
+class CudaBackend : public Backend {
+ public:
+  CudaBackend(const Options& options, const Problem& problem,
+              DeviceProfile* profile)
+      : profile_(profile),
+        plan_(options, problem),
+        free_bytes_(FreeBytesFor(options, plan_)),
+        textures_(problem, plan_),
+        planes_(plan_.pixels),
+        cost_(plan_.pixel_views),
+        prob_(plan_.pixel_views),
+        backward_(plan_.backward),
+        checkpoints_(plan_.checkpoints),
+        forward_(plan_.forward),
+        previous_(plan_.previous),
+        cameras_(SourceCameras::kNumCoefficients * plan_.num_views),
+        task_(MakeTask(options, problem)),
+        launch_(task_, ChooseKernel(options, plan_.num_views)) {
+    if (plan_.tapa) {
+      textureness_ = DeviceArray<uint16_t>(plan_.pixels);
+      fine_ = DevicePlanes(plan_.pixels);
+      coarse_ = DevicePlanes(plan_.pixels);
+    }
+    UploadCameras(problem);
+    if (profile_ != nullptr) {
+      DescribeDevice(options.device, profile_);
+      DescribeKernel(launch_, profile_);
+    }
+  }
+
+  bool SetEstimate(Map<float> depth, Map<Vec3> normal,
+                   const More& more) override {
+    std::vector<PackedPlane> packed(plan_.pixels);
+    for (size_t i = 0; i < packed.size(); ++i) {
+      packed[i] = Pack({depth.data()[i], normal.data()[i]});
+    }
+    planes_.Upload(packed.data(), packed.size());
+    is_downloaded_ = false;
+    const Clock::time_point begin = Clock::now();
+    for (int row = 0; row < plan_.height; row += kRowsPerLaunch) {
+      const int end = std::min(plan_.height, row + kRowsPerLaunch);
+      LaunchInitialize(launch_, task_, textures_.objects(), row, end,
+                       streams_[0].get());
+      const int launch = row / kRowsPerLaunch;
+      if (!GoOnAfter(launch, 1, static_cast<double>(end) / plan_.height,
+                     more)) {
+        return false;
+      }
+    }
+    WaitForAll();
+    if (profile_ != nullptr) {
+      profile_->initialize_seconds += SecondsSince(begin);
+    }
+    return true;
+  }
+
+  bool Sweep(const SweepParams& params, const More& more) override {
+    is_downloaded_ = false;
+    task_.params = params;
+    has_support_ = params.filter;
+    Clock::time_point begin = Clock::now();
+    ForStreams([this](int first, int last, const Stream& stream) {
+      LaunchCheckpoints(task_, first, last, stream.get());
+    });
+    if (profile_ != nullptr) {
+      WaitForAll();
+      profile_->checkpoint_seconds += SecondsSince(begin);
+      begin = Clock::now();
+    }
+    const int num_pieces = task_.NumPieces();
+    for (int piece = 0; piece < num_pieces; ++piece) {
+      ForStreams([&](int first, int last, const Stream& stream) {
+        LaunchSweepPiece(launch_, task_, textures_.objects(), piece, first,
+                         last, stream.get());
+      });
+      if (!GoOnAfter(piece, kNumStreams,
+                     static_cast<double>(piece + 1) / num_pieces, more)) {
+        return false;
+      }
+    }
+    WaitForAll();
+    if (profile_ != nullptr) {
+      profile_->sweep_seconds += SecondsSince(begin);
+    }
+    return true;
+  }
+
+  void SetTextureness(Map<float> textureness) override {
+    std::vector<uint16_t> codes(textureness.size());
+    std::transform(textureness.data(), textureness.data() + codes.size(),
+                   codes.begin(), [](float t) { return EncodeTextureness(t); });
+    textureness_.Upload(codes.data(), codes.size());
+    task_.textureness = codes.empty() ? nullptr : textureness_.data();
+  }
+
+  void SetPlanes(PlaneSet fine, PlaneSet coarse) override {
+    fine_.Set(fine);
+    coarse_.Set(coarse);
+    task_.fine = fine_.table();
+    task_.coarse = coarse_.table();
+  }
+
+  const Map<float>& Depth() override {
+    DownloadEstimate();
+    return depth_;
+  }
+
+  const Map<Vec3>& Normal() override {
+    DownloadEstimate();
+    return normal_;
+  }
+
+  Estimate TakeResult() override {
+    DownloadEstimate();
+    Estimate estimate;
+    estimate.depth = std::move(depth_);
+    estimate.normal = std::move(normal_);
+    estimate.selection_prob.resize(plan_.pixel_views);
+    prob_.Download(estimate.selection_prob.data());
+    if (has_support_) {
+      DownloadSupport(&estimate);
+    }
+    return estimate;
+  }
+
+ private:
+  // Looks before anything is allocated, so that what is short is named.
+  static size_t FreeBytesFor(const Options& options, const MemoryPlan& plan) {
+    const size_t free_bytes = UseDevice(options.device);
+    if (plan.Bytes() > free_bytes) {
+      throw DeviceError("it takes " + Megabytes(plan.Bytes()) +
+                        " of GPU memory and " + Megabytes(free_bytes) +
+                        " are free");
+    }
+    return free_bytes;
+  }
+
+  SweepTask MakeTask(const Options& options, const Problem& problem) const {
+    SweepTask task;
+    task.width = plan_.width;
+    task.height = plan_.height;
+    task.num_views = plan_.num_views;
+    task.window = WindowShape::FromOptions(options);
+    task.camera = CameraTable(problem).reference();
+    task.cameras = cameras_.data();
+    task.planes = planes_.data();
+    task.cost = cost_.data();
+    task.prob = prob_.data();
+    task.weight_range = static_cast<float>(options.tapa.weight_range);
+    task.depth_min = problem.depth_min;
+    task.depth_max = problem.depth_max;
+    task.piece_length = plan_.piece_length;
+    task.checkpoints = checkpoints_.data();
+    task.backward = backward_.data();
+    task.forward = forward_.data();
+    task.previous = previous_.data();
+    return task;
+  }
+
+  void UploadCameras(const Problem& problem) {
+    const CameraTable table(problem);
+    const int n = plan_.num_views;
+    std::vector<float> coefficients;
+    for (int i = 0; i < SourceCameras::kNumCoefficients; ++i) {
+      const float* row = table.coefficients().data() + i * table.padded_count();
+      coefficients.insert(coefficients.end(), row, row + n);
+    }
+    cameras_.Upload(coefficients.data(), coefficients.size());
+  }
+
+  // Calls run(first line, last line, stream) for the lines of every stream.
+  template <class Run>
+  void ForStreams(const Run& run) {
+    const int num_lines = task_.NumLines();
+    for (int i = 0; i < kNumStreams; ++i) {
+      const int begin = num_lines * i / kNumStreams;
+      const int end = num_lines * (i + 1) / kNumStreams;
+      if (begin < end) {
+        run(begin, end, streams_[i]);
+      }
+    }
+  }
+
+  // After launch number `launch` of the first num_streams streams: waits for
+  // those kQueueLength launches before, while the device goes on with the
+  // others, and asks whether to go on.
+  bool GoOnAfter(int launch, int num_streams, double done, const More& more) {
+    const int slot = launch % kQueueLength;
+    for (int i = 0; i < num_streams; ++i) {
+      events_[(slot + 1) % kQueueLength][i].Wait();
+      events_[slot][i].Record(streams_[i]);
+    }
+    if (!more(done)) {
+      WaitForAll();
+      return false;
+    }
+    return true;
+  }
+
+  void WaitForAll() const {
+    for (const Stream& stream : streams_) {
+      stream.Wait();
+    }
+  }
+
+  void DownloadEstimate() {
+    if (is_downloaded_) {
+      return;
+    }
+    std::vector<PackedPlane> packed(plan_.pixels);
+    planes_.Download(packed.data());
+    depth_ = Map<float>(plan_.width, plan_.height);
+    normal_ = Map<Vec3>(plan_.width, plan_.height);
+    for (size_t i = 0; i < packed.size(); ++i) {
+      depth_.data()[i] = packed[i].depth;
+      normal_.data()[i] = UnpackNormal(packed[i].normal);
+    }
+    is_downloaded_ = true;
+  }
+
+  // What the last sweep left where the costs were, see SweepTask::cost.
+  void DownloadSupport(Estimate* estimate) const {
+    const size_t n = plan_.num_views;
+    const size_t mask_bytes = (n + 7) / 8;
+    UninitializedVector<uint16_t> cost(plan_.pixel_views);
+    cost_.Download(cost.data());
+    estimate->consistent.resize(plan_.pixels * mask_bytes);
+    if (plan_.tapa) {
+      estimate->chosen = Map<uint8_t>(plan_.width, plan_.height);
+    }
+    for (size_t i = 0; i < plan_.pixels; ++i) {
+      const auto* bytes = reinterpret_cast<const uint8_t*>(cost.data() + i * n);
+      std::memcpy(estimate->consistent.data() + i * mask_bytes, bytes,
+                  mask_bytes);
+      if (plan_.tapa) {
+        estimate->chosen.data()[i] = bytes[mask_bytes];
+      }
+    }
+  }
+
+  DeviceProfile* const profile_;
+  const MemoryPlan plan_;
+  // By then the device is chosen for all that follows.
+  const size_t free_bytes_;
+  ProblemTextures textures_;
+  DeviceArray<PackedPlane> planes_;
+  DeviceArray<uint16_t> cost_;
+  DeviceArray<uint16_t> prob_;
+  DeviceArray<float> backward_;
+  DeviceArray<float> checkpoints_;
+  DeviceArray<float> forward_;
+  DeviceArray<Plane> previous_;
+  DeviceArray<float> cameras_;
+  DeviceArray<uint16_t> textureness_;
+  DevicePlanes fine_;
+  DevicePlanes coarse_;
+  SweepTask task_;
+  KernelLaunch launch_;
+  Stream streams_[kNumStreams];
+  Event events_[kQueueLength][kNumStreams];
+  // Whether the last sweep had the filter on.
+  bool has_support_ = false;
+  // The estimate on the host, while it is that on the device.
+  bool is_downloaded_ = false;
+  Map<float> depth_;
+  Map<Vec3> normal_;
+};
+
+}  // namespace
+
+std::unique_ptr<Backend> MakeCudaBackend(const Options& options,
+                                         const Problem& problem,
+                                         DeviceProfile* profile) {
+  return std::make_unique<CudaBackend>(options, problem, profile);
+}
+
+}  // namespace tapa

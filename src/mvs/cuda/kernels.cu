@@ -1,0 +1,250 @@
+#include <algorithm>
+
+#include "src/mvs/cuda/device_textures.h"
+#include "src/mvs/cuda/kernels.h"
+#include "src/mvs/cuda/lanes.h"
+#include "src/mvs/cuda/memory.h"
+#include "src/mvs/cuda/sweep_body.h"
+#include "src/mvs/devices.h"
+
+namespace tapa {
+namespace {
+
+constexpr int kWarpSize = WarpLanes::kSize;
+// Lines of a block of warps: neighbours, which read the same parts of images.
+constexpr int kWarpsPerBlock = 4;
+constexpr int kBlockThreads = kWarpsPerBlock * kWarpSize;
+// 16 warps per multiprocessor: a texture unit needs about so many to be busy.
+constexpr int kMinBlocks = 4;
+// As COLMAP's kernel has.
+constexpr int kNaiveBlockThreads = 32;
+// Pixels that a warp initializes one after the other.
+constexpr int kPixelsPerWarp = 32;
+
+// Words of shared memory: the cameras, which lanes read at different views at a
+// time, for which constant memory is slow, then the scratch of each warp.
+template <class Sizes>
+__host__ __device__ int CameraWords(const SweepTask& task) {
+  return SourceCameras::kNumCoefficients * Sizes::Stride(task.num_views);
+}
+
+// The cameras, copied to shared memory by the threads of a block.
+template <class Sizes>
+__device__ __forceinline__ SourceCameras LoadCameras(const SweepTask& task,
+                                                     float* shared) {
+  const int n = task.num_views;
+  const int stride = Sizes::Stride(n);
+  for (int i = threadIdx.x; i < SourceCameras::kNumCoefficients * n;
+       i += blockDim.x) {
+    shared[i / n * stride + i % n] = task.cameras[i];
+  }
+  __syncthreads();
+  return ArrangeCameras(shared, stride, n, n);
+}
+
+template <class Sizes>
+__device__ __forceinline__ float* WarpScratch(const SweepTask& task,
+                                              float* shared) {
+  return shared + CameraWords<Sizes>(task) +
+         threadIdx.x / kWarpSize *
+             ScratchWords<WarpLanes, Sizes>(task.window, task.num_views);
+}
+
+extern __shared__ __align__(16) float shared_words[];
+
+template <class Sizes, bool kPrecise>
+__global__ void __launch_bounds__(kBlockThreads, kMinBlocks)
+    SweepPieceKernel(const __grid_constant__ SweepTask task,
+                     const __grid_constant__ TextureObjects objects, int piece,
+                     int begin, int end) {
+  const SourceCameras views = LoadCameras<Sizes>(task, shared_words);
+  const int line = begin + (blockIdx.x * blockDim.x + threadIdx.x) / kWarpSize;
+  if (line < end) {
+    SweepPiece<WarpLanes, Sizes>(task, views, DeviceTextures<kPrecise>(objects),
+                                 line, piece,
+                                 WarpScratch<Sizes>(task, shared_words));
+  }
+}
+
+template <class Sizes, bool kPrecise>
+__global__ void __launch_bounds__(kBlockThreads, kMinBlocks)
+    InitializeKernel(const __grid_constant__ SweepTask task,
+                     const __grid_constant__ TextureObjects objects,
+                     size_t begin, size_t end) {
+  const SourceCameras views = LoadCameras<Sizes>(task, shared_words);
+  const size_t warp =
+      (static_cast<size_t>(blockIdx.x) * blockDim.x + threadIdx.x) / kWarpSize;
+  const size_t first = begin + warp * kPixelsPerWarp;
+  for (size_t i = first; i < first + kPixelsPerWarp && i < end; ++i) {
+    InitializePixel<WarpLanes, Sizes>(
+        task, views, DeviceTextures<kPrecise>(objects),
+        static_cast<int>(i / task.width), static_cast<int>(i % task.width),
+        WarpScratch<Sizes>(task, shared_words));
+  }
+}
+
+__global__ void CheckpointKernel(const __grid_constant__ SweepTask task,
+                                 int begin, int end) {
+  const int line = begin + (blockIdx.x * blockDim.x + threadIdx.x) / kWarpSize;
+  if (line < end) {
+    ComputeCheckpoints<WarpLanes>(task, line);
+  }
+}
+
+// The reference: a thread does everything for its line.
+__global__ void NaiveSweepPieceKernel(const __grid_constant__ SweepTask task,
+                                      const __grid_constant__ TextureObjects
+                                          objects,
+                                      int piece, int begin, int end) {
+  const SourceCameras views = LoadCameras<CommonSizes>(task, shared_words);
+  constexpr int kWords =
+      kViewArrays * CommonSizes::kMaxViews + kPaddedFixedWords +
+      2 * CommonSizes::kRowSamples * CommonSizes::kRowSamples;
+  __align__(8) float words[kWords];
+  const int line = begin + blockIdx.x * blockDim.x + threadIdx.x;
+  if (line < end) {
+    SweepPiece<SerialLanes, CommonSizes>(
+        task, views, DeviceTextures<false>(objects), line, piece, words);
+  }
+}
+
+using SweepKernel = void (*)(SweepTask, TextureObjects, int, int, int);
+using InitializeKernelPointer = void (*)(SweepTask, TextureObjects, size_t,
+                                         size_t);
+
+SweepKernel SweepKernelOf(KernelKind kind) {
+  switch (kind) {
+    case KernelKind::kCommon:
+      return SweepPieceKernel<CommonSizes, false>;
+    case KernelKind::kAny:
+      return SweepPieceKernel<AnySizes, false>;
+    case KernelKind::kPrecise:
+      return SweepPieceKernel<AnySizes, true>;
+    case KernelKind::kNaive:
+      break;
+  }
+  return NaiveSweepPieceKernel;
+}
+
+// Once per estimation, so that one size will do.
+InitializeKernelPointer InitializeKernelOf(KernelKind kind) {
+  return kind == KernelKind::kPrecise ? InitializeKernel<AnySizes, true>
+                                      : InitializeKernel<AnySizes, false>;
+}
+
+int NumBlocks(size_t count, size_t per_block) {
+  return static_cast<int>((count + per_block - 1) / per_block);
+}
+
+size_t SharedBytes(const SweepTask& task, KernelKind kind, int num_warps) {
+  const bool common = kind == KernelKind::kCommon || kind == KernelKind::kNaive;
+  const int cameras =
+      common ? CameraWords<CommonSizes>(task) : CameraWords<AnySizes>(task);
+  const int scratch =
+      kind == KernelKind::kNaive ? 0
+      : common
+          ? ScratchWords<WarpLanes, CommonSizes>(task.window, task.num_views)
+          : ScratchWords<WarpLanes, AnySizes>(task.window, task.num_views);
+  return (cameras + static_cast<size_t>(num_warps) * scratch) * sizeof(float);
+}
+
+int MaxSharedBytes() {
+  int device = 0;
+  int bytes = 0;
+  CheckCuda(cudaGetDevice(&device), "asking for the GPU");
+  CheckCuda(cudaDeviceGetAttribute(
+                &bytes, cudaDevAttrMaxSharedMemoryPerBlockOptin, device),
+            "asking for the GPU's shared memory");
+  return bytes;
+}
+
+void AllowSharedBytes(const void* kernel, size_t bytes) {
+  CheckCuda(
+      cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize,
+                           static_cast<int>(bytes)),
+      "setting a kernel's shared memory");
+}
+
+}  // namespace
+
+KernelLaunch::KernelLaunch(const SweepTask& task, KernelKind kind)
+    : kind(kind) {
+  const bool naive = kind == KernelKind::kNaive;
+  // Large windows and many views leave room for fewer warps in a block.
+  int num_warps = naive ? 0 : kWarpsPerBlock;
+  constexpr size_t kUsualBytes = 48 * 1024;
+  while (num_warps > 1 && SharedBytes(task, kind, num_warps) > kUsualBytes) {
+    num_warps /= 2;
+  }
+  shared_bytes = SharedBytes(task, kind, num_warps);
+  if (shared_bytes > static_cast<size_t>(MaxSharedBytes())) {
+    throw DeviceError(
+        "the window is too large, or there are too many source views, for the "
+        "GPU's shared memory");
+  }
+  block_threads = naive ? kNaiveBlockThreads : num_warps * kWarpSize;
+  lines_per_block = naive ? kNaiveBlockThreads : num_warps;
+  AllowSharedBytes(reinterpret_cast<const void*>(SweepKernelOf(kind)),
+                   shared_bytes);
+}
+
+void LaunchInitialize(const KernelLaunch& launch, const SweepTask& task,
+                      const TextureObjects& textures, int begin, int end,
+                      cudaStream_t stream) {
+  const size_t first = task.Pixel(begin, 0);
+  const size_t last = task.Pixel(end, 0);
+  const KernelKind kind = launch.kind == KernelKind::kPrecise
+                              ? KernelKind::kPrecise
+                              : KernelKind::kAny;
+  const KernelLaunch any(task, kind);
+  const InitializeKernelPointer kernel = InitializeKernelOf(kind);
+  AllowSharedBytes(reinterpret_cast<const void*>(kernel), any.shared_bytes);
+  const size_t pixels_per_block = any.lines_per_block * kPixelsPerWarp;
+  kernel<<<NumBlocks(last - first, pixels_per_block), any.block_threads,
+           any.shared_bytes, stream>>>(task, textures, first, last);
+  CheckCuda(cudaGetLastError(), "computing first costs on the GPU");
+}
+
+void LaunchCheckpoints(const SweepTask& task, int begin, int end,
+                       cudaStream_t stream) {
+  CheckpointKernel<<<NumBlocks(end - begin, kWarpsPerBlock), kBlockThreads, 0,
+                     stream>>>(task, begin, end);
+  CheckCuda(cudaGetLastError(), "computing messages on the GPU");
+}
+
+void LaunchSweepPiece(const KernelLaunch& launch, const SweepTask& task,
+                      const TextureObjects& textures, int piece, int begin,
+                      int end, cudaStream_t stream) {
+  SweepKernelOf(
+      launch.kind)<<<NumBlocks(end - begin, launch.lines_per_block),
+                     launch.block_threads, launch.shared_bytes, stream>>>(
+      task, textures, piece, begin, end);
+  CheckCuda(cudaGetLastError(), "sweeping on the GPU");
+}
+
+KernelResources SweepResources(const KernelLaunch& launch) {
+  const void* kernel =
+      reinterpret_cast<const void*>(SweepKernelOf(launch.kind));
+  cudaFuncAttributes attributes;
+  CheckCuda(cudaFuncGetAttributes(&attributes, kernel), "asking for a kernel");
+  int blocks = 0;
+  CheckCuda(cudaOccupancyMaxActiveBlocksPerMultiprocessor(
+                &blocks, kernel, launch.block_threads, launch.shared_bytes),
+            "asking for a kernel's occupancy");
+  int device = 0;
+  cudaDeviceProp properties;
+  CheckCuda(cudaGetDevice(&device), "asking for the GPU");
+  CheckCuda(cudaGetDeviceProperties(&properties, device),
+            "asking for the GPU's properties");
+  KernelResources result;
+  result.registers = attributes.numRegs;
+  result.shared_bytes = attributes.sharedSizeBytes + launch.shared_bytes;
+  result.local_bytes = attributes.localSizeBytes;
+  result.occupancy = static_cast<double>(blocks) * launch.block_threads /
+                     properties.maxThreadsPerMultiProcessor;
+  result.resident_lines =
+      blocks * launch.lines_per_block * properties.multiProcessorCount;
+  return result;
+}
+
+}  // namespace tapa

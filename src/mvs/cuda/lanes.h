@@ -1,0 +1,97 @@
+#ifndef TAPA_SRC_MVS_CUDA_LANES_H_
+#define TAPA_SRC_MVS_CUDA_LANES_H_
+
+#include "src/mvs/cuda/host_warp.h"
+#include "src/mvs/host_device.h"
+#include "src/mvs/sweep.h"
+
+namespace tapa {
+
+// The 32 lanes of a warp share a pixel (see SerialLanes in sweep.h). Loops over
+// views and over the samples of a patch are shared out among all of them;
+// correlations among groups, whose lanes take neighbouring samples, so that
+// their texture reads meet in the same lines of the cache.
+//
+// On the host it runs in a HostWarp.
+struct WarpLanes {
+  static constexpr int kSize = 32;
+
+  static TAPA_INLINE int First() {
+#if defined(__CUDA_ARCH__)
+    return threadIdx.x % kSize;
+#else
+    return HostWarp::Lane();
+#endif
+  }
+  static constexpr TAPA_INLINE int Step() { return kSize; }
+
+  static TAPA_INLINE void Sync() {
+#if defined(__CUDA_ARCH__)
+    __syncwarp();
+#else
+    HostWarp::Sync();
+#endif
+  }
+
+  static TAPA_INLINE float Sum(float value) { return SumOf<kSize>(value); }
+  // Exact up to 2^24.
+  static TAPA_INLINE int Sum(int value) {
+    return static_cast<int>(SumOf<kSize>(static_cast<float>(value)));
+  }
+
+  static TAPA_INLINE float Accumulate(int count, float* values) {
+    float before = 0.0f;
+    for (int begin = 0; begin < count; begin += kSize) {
+      const int i = begin + First();
+      float sum = i < count ? values[i] : 0.0f;
+      for (int distance = 1; distance < kSize; distance *= 2) {
+        const int source = First() - distance;
+        const float other = Shuffle<kSize>(sum, source < 0 ? First() : source);
+        sum += source < 0 ? 0.0f : other;
+      }
+      sum += before;
+      if (i < count) {
+        values[i] = sum;
+      }
+      before = Shuffle<kSize>(sum, kSize - 1);
+    }
+    Sync();
+    return before;
+  }
+
+  static constexpr int kGroupSize = 4;
+  static constexpr int kNumGroups = kSize / kGroupSize;
+  static constexpr int kNumSideBySide = kNumHypotheses - 1;
+  static TAPA_INLINE int Group() { return First() / kGroupSize; }
+  static TAPA_INLINE int GroupLane() { return First() % kGroupSize; }
+  static TAPA_INLINE bool IsFirstOfGroup() { return GroupLane() == 0; }
+  static TAPA_INLINE float GroupSum(float value) {
+    return SumOf<kGroupSize>(value);
+  }
+
+ private:
+  // What lane `source` of the same group gives.
+  template <int kGroup>
+  static TAPA_INLINE float Shuffle(float value, int source) {
+#if defined(__CUDA_ARCH__)
+    // Other groups may be elsewhere.
+    constexpr unsigned kLanes = 0xFFFFFFFFu >> (kSize - kGroup);
+    const unsigned mask = kLanes << (First() / kGroup * kGroup);
+    return __shfl_sync(mask, value, source);
+#else
+    return HostWarp::Shuffle(value, source, kGroup);
+#endif
+  }
+
+  template <int kGroup>
+  static TAPA_INLINE float SumOf(float value) {
+    for (int distance = kGroup / 2; distance > 0; distance /= 2) {
+      value += Shuffle<kGroup>(value, First() ^ distance);
+    }
+    return value;
+  }
+};
+
+}  // namespace tapa
+
+#endif  // TAPA_SRC_MVS_CUDA_LANES_H_

@@ -1,0 +1,110 @@
+#ifndef TAPA_SRC_MVS_CUDA_LAYOUT_H_
+#define TAPA_SRC_MVS_CUDA_LAYOUT_H_
+
+#include <cstdint>
+
+#include "src/mvs/host_device.h"
+#include "src/mvs/options.h"
+#include "src/mvs/sweep.h"
+
+namespace tapa {
+
+// The correlation window, as kernels read it.
+struct WindowShape {
+  int radius = 5;
+  int step = 1;
+  // Samples in a row and in a column.
+  int row_samples = 11;
+  // Factors in the exponent of the bilateral weight: of the squared difference
+  // in intensity (0 to 255) and of the squared distance in pixels.
+  float color_scale = 0;
+  float spatial_scale = 0;
+
+  static WindowShape FromOptions(const Options& options);
+};
+
+// Sizes that a kernel knows when it is compiled, so that addresses in the
+// scratch become constants and loops over the window are unrolled.
+
+// Most problems: a window of 11 by 11 samples and up to 32 views.
+struct CommonSizes {
+  static constexpr int kMaxViews = 32;
+  static constexpr int kRowSamples = 11;
+  static TAPA_INLINE int RowSamples(const WindowShape&) { return kRowSamples; }
+  static TAPA_INLINE int Stride(int /*num_views*/) { return kMaxViews; }
+  static bool Fits(const WindowShape& window, int num_views) {
+    return window.row_samples == kRowSamples && num_views <= kMaxViews;
+  }
+};
+
+// All others.
+struct AnySizes {
+  static TAPA_INLINE int RowSamples(const WindowShape& window) {
+    return window.row_samples;
+  }
+  static TAPA_INLINE int Stride(int num_views) { return (num_views + 3) & ~3; }
+};
+
+// A sample of the reference patch: its weight (all of them sum up to 1), and
+// the weight times (intensity - mean).
+struct alignas(8) PatchSample {
+  float weight;
+  float weighted_intensity;
+};
+
+// Elements from one row of samples to the next: whole groups of lanes.
+template <class Lanes>
+TAPA_INLINE int PatchStride(int row_samples) {
+  return (row_samples + Lanes::kGroupSize - 1) / Lanes::kGroupSize *
+         Lanes::kGroupSize;
+}
+
+// The working memory of one pixel, in 4-byte words: the arrays of PixelScratch
+// and the patch.
+constexpr int kViewArrays = 9 + kNumHypotheses + kNumDepths;
+constexpr int kPlaneWords = sizeof(Plane) / 4;
+constexpr int kVec3Words = sizeof(Vec3) / 4;
+constexpr int kFixedWords =
+    kDrawBlock + kNumHypotheses * (kPlaneWords + kVec3Words + 1);
+// Keeps what follows, pairs of words, aligned.
+constexpr int kPaddedFixedWords = (kFixedWords + 1) / 2 * 2;
+
+template <class Lanes, class Sizes>
+TAPA_INLINE int ScratchWords(const WindowShape& window, int num_views) {
+  const int row_samples = Sizes::RowSamples(window);
+  return kViewArrays * Sizes::Stride(num_views) + kPaddedFixedWords +
+         2 * row_samples * PatchStride<Lanes>(row_samples);
+}
+
+// Lays out the scratch in `words`, which are aligned to 8 bytes. backward
+// stays unset.
+template <class Sizes>
+TAPA_INLINE PixelScratch ArrangeScratch(int num_views, float* words,
+                                        PatchSample** patch) {
+  const int stride = Sizes::Stride(num_views);
+  PixelScratch s;
+  s.cost = words;
+  s.prob = words + stride;
+  s.forward = words + 2 * stride;
+  s.cdf = words + 3 * stride;
+  s.num_drawn = words + 4 * stride;
+  s.source_depth = words + 5 * stride;
+  s.order = reinterpret_cast<int*>(words + 6 * stride);
+  s.projection = reinterpret_cast<Projection*>(words + 7 * stride);
+  s.hypothesis_cost = words + 9 * stride;
+  s.geom_cost = words + (9 + kNumHypotheses) * stride;
+  s.stride = stride;
+  float* fixed = words + kViewArrays * stride;
+  s.uniform = fixed;
+  s.sum = fixed + kDrawBlock;
+  s.plane = reinterpret_cast<Plane*>(s.sum + kNumHypotheses);
+  s.homography =
+      reinterpret_cast<Vec3*>(s.sum + (1 + kPlaneWords) * kNumHypotheses);
+  *patch = reinterpret_cast<PatchSample*>(fixed + kPaddedFixedWords);
+  s.backward = nullptr;
+  return s;
+}
+
+}  // namespace tapa
+
+#endif  // TAPA_SRC_MVS_CUDA_LAYOUT_H_

@@ -1,0 +1,44 @@
+#ifndef TAPA_SRC_MVS_CUDA_MEMORY_PLAN_H_
+#define TAPA_SRC_MVS_CUDA_MEMORY_PLAN_H_
+
+#include <cstddef>
+
+#include "src/mvs/estimate_depth.h"
+
+namespace tapa {
+
+// Sizes of what the CUDA backend allocates, in elements, but for the planes of
+// TAPA, which take some kilobytes.
+struct MemoryPlan {
+  MemoryPlan(const Options& options, const Problem& problem);
+
+  // All of it in bytes.
+  size_t Bytes() const;
+
+  int width = 0;
+  int height = 0;
+  int num_views = 0;
+  // Of the largest source view: all lie in layers of one texture.
+  int max_source_width = 0;
+  int max_source_height = 0;
+  bool geometric = false;
+  bool tapa = false;
+  // Pixels of a line that a launch sweeps. The backward messages that have to
+  // be kept, those of a piece and one per piece, are fewest at the square root
+  // of a line's length.
+  int piece_length = 0;
+
+  size_t pixels = 0;
+  size_t pixel_views = 0;
+  size_t source_pixels = 0;
+  // Floats, for lines in either direction.
+  size_t backward = 0;
+  size_t checkpoints = 0;
+  size_t forward = 0;
+  // Planes.
+  size_t previous = 0;
+};
+
+}  // namespace tapa
+
+#endif  // TAPA_SRC_MVS_CUDA_MEMORY_PLAN_H_

@@ -1,0 +1,19 @@
+// What the program has in place of the CUDA backend where it is built without.
+
+#include "src/mvs/backend.h"
+#include "src/mvs/devices.h"
+
+namespace tapa {
+
+DeviceList FindDevices() {
+  DeviceList list;
+  list.why_none = "this program was built without CUDA";
+  return list;
+}
+
+std::unique_ptr<Backend> MakeCudaBackend(const Options&, const Problem&,
+                                         DeviceProfile*) {
+  throw DeviceError(FindDevices().why_none);
+}
+
+}  // namespace tapa

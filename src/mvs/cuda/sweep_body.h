@@ -1,0 +1,226 @@
+#ifndef TAPA_SRC_MVS_CUDA_SWEEP_BODY_H_
+#define TAPA_SRC_MVS_CUDA_SWEEP_BODY_H_
+
+#include "src/mvs/cuda/patch.h"
+#include "src/mvs/cuda/sweep_task.h"
+
+// What kernels do, as functions that also run on the host, for tests: `Lanes`
+// are those of one pixel, `Sizes` is one of layout.h, `Textures` is described
+// in patch.h. views: the cameras, in memory that is fast to read for lanes that
+// look at different views at a time.
+
+namespace tapa {
+
+// Computes the checkpoints of a line.
+template <class Lanes>
+TAPA_INLINE void ComputeCheckpoints(const SweepTask& task, int index) {
+  const SweepLine line =
+      LineOf(task.Direction(), index, task.width, task.height);
+  const int n = task.num_views;
+  for (int m = Lanes::First(); m < n; m += Lanes::Step()) {
+    float message = ViewSelection::kBorderMessage;
+    for (int i = line.length - 1; i >= task.piece_length; --i) {
+      const size_t at = task.Pixel(line.Row(i), line.Col(i)) * n + m;
+      message = ViewSelection::Backward(
+          task.params.selection.Emission(DecodeCost(task.cost[at])), message);
+      if (i % task.piece_length == 0) {
+        const size_t piece = i / task.piece_length - 1;
+        task.checkpoints[(piece * task.NumLines() + index) * n + m] = message;
+      }
+    }
+  }
+}
+
+// Computes the backward messages of pixels [begin, end) of a line, a piece.
+// Every lane reads only its own views' messages, so nobody waits for them.
+template <class Lanes>
+TAPA_INLINE void ComputeBackwardMessages(const SweepTask& task,
+                                         const SweepLine& line, int index,
+                                         int begin, int end) {
+  const int n = task.num_views;
+  const size_t piece = begin / task.piece_length;
+  float* backward =
+      task.backward + static_cast<size_t>(index) * task.piece_length * n;
+  for (int m = Lanes::First(); m < n; m += Lanes::Step()) {
+    float message =
+        end == line.length
+            ? ViewSelection::kBorderMessage
+            : task.checkpoints[(piece * task.NumLines() + index) * n + m];
+    for (int i = end - 1; i >= begin; --i) {
+      const size_t at = task.Pixel(line.Row(i), line.Col(i)) * n + m;
+      message = ViewSelection::Backward(
+          task.params.selection.Emission(DecodeCost(task.cost[at])), message);
+      backward[(i - begin) * n + m] = message;
+    }
+  }
+}
+
+TAPA_INLINE Plane FindPlane(const SweepTask& task, const PlaneTable& table,
+                            size_t pixel, const Vec3& ray) {
+  if (table.index == nullptr || table.index[pixel] == PlaneSet::kNone) {
+    return Plane();
+  }
+  return ProposedPlane(table.planes[table.index[pixel]], ray, task.depth_min,
+                       task.depth_max);
+}
+
+TAPA_INLINE PixelGuide GuideOf(const SweepTask& task, size_t pixel,
+                               const Vec3& ray) {
+  PixelGuide guide;
+  if (task.textureness != nullptr) {
+    guide.weights = TextureWeights::FromTextureness(
+        DecodeTextureness(task.textureness[pixel]), task.weight_range);
+  }
+  guide.fine = FindPlane(task, task.fine, pixel, ray);
+  guide.coarse = FindPlane(task, task.coarse, pixel, ray);
+  return guide;
+}
+
+// Writes which views support the estimate, and what was chosen, where the
+// pixel's costs were. flags: one for each view.
+template <class Lanes>
+TAPA_INLINE void StoreSupport(const SweepTask& task, size_t pixel,
+                              const Choice& choice, const float* flags) {
+  const int n = task.num_views;
+  const int mask_bytes = (n + 7) / 8;
+  uint8_t* to = reinterpret_cast<uint8_t*>(task.cost + pixel * n);
+  for (int i = Lanes::First(); i < mask_bytes; i += Lanes::Step()) {
+    unsigned bits = 0;
+    for (int m = 8 * i; m < 8 * i + 8 && m < n; ++m) {
+      bits |= choice.keep && flags[m] > 0.0f ? 1u << (m % 8) : 0u;
+    }
+    to[i] = static_cast<uint8_t>(bits);
+  }
+  if (Lanes::First() == 0) {
+    to[mask_bytes] = static_cast<uint8_t>(choice.hypothesis);
+  }
+}
+
+template <class Lanes>
+TAPA_INLINE void StorePixel(const SweepTask& task, size_t pixel,
+                            const Choice& choice, const PixelScratch& s,
+                            const float* flags) {
+  const int n = task.num_views;
+  for (int m = Lanes::First(); m < n; m += Lanes::Step()) {
+    task.prob[pixel * n + m] = EncodeProb(s.prob[m]);
+    if (!task.params.filter) {
+      task.cost[pixel * n + m] = EncodeCost(s.cost[m]);
+    }
+  }
+  if (Lanes::First() == 0) {
+    task.planes[pixel] =
+        choice.keep ? Pack(choice.plane) : PackedPlane{0.0f, kNoNormal};
+  }
+  if (task.params.filter) {
+    Lanes::Sync();
+    StoreSupport<Lanes>(task, pixel, choice, flags);
+  }
+}
+
+// Sweeps one pixel. s: the scratch, which carries the forward messages and says
+// where the backward ones are.
+template <class Lanes, class Sizes, class Textures>
+TAPA_INLINE Choice SweepTaskPixel(const SweepTask& task,
+                                  const SourceCameras& views,
+                                  const Textures& textures, int row, int col,
+                                  const Plane& previous,
+                                  const Vec3& previous_ray,
+                                  PatchSample* samples, PixelScratch* s) {
+  const size_t pixel = task.Pixel(row, col);
+  const int n = task.num_views;
+  const PatchStatistics patch =
+      LoadPatch<Lanes, Sizes>(task.window, textures, row, col, samples);
+  for (int m = Lanes::First(); m < n; m += Lanes::Step()) {
+    s->cost[m] = DecodeCost(task.cost[pixel * n + m]);
+    s->prob[m] = DecodeProb(task.prob[pixel * n + m]);
+  }
+  // The distribution's memory is free by the time views are judged.
+  float* const flags = s->cdf;
+  PixelSources<Lanes, Sizes, Textures> sources(task.window, textures, samples,
+                                               patch, flags);
+  const Choice choice = SweepPixel<Lanes>(
+      task.params, task.camera, views, sources, row, col, pixel,
+      Unpack(task.planes[pixel]), previous, previous_ray,
+      GuideOf(task, pixel, task.camera.Ray(row, col)), s);
+  StorePixel<Lanes>(task, pixel, choice, *s, flags);
+  // The next pixel overwrites what lanes still read.
+  Lanes::Sync();
+  return choice;
+}
+
+// Sweeps a piece of a line. words: the scratch, see layout.h.
+template <class Lanes, class Sizes, class Textures>
+TAPA_INLINE void SweepPiece(const SweepTask& task, const SourceCameras& views,
+                            const Textures& textures, int index, int piece,
+                            float* words) {
+  const SweepLine line =
+      LineOf(task.Direction(), index, task.width, task.height);
+  const int n = task.num_views;
+  const int begin = piece * task.piece_length;
+  const int rest = line.length - begin;
+  const int end = begin + (rest < task.piece_length ? rest : task.piece_length);
+  ComputeBackwardMessages<Lanes>(task, line, index, begin, end);
+
+  PatchSample* samples;
+  PixelScratch s = ArrangeScratch<Sizes>(n, words, &samples);
+  float* const forward = task.forward + static_cast<size_t>(index) * n;
+  for (int m = Lanes::First(); m < n; m += Lanes::Step()) {
+    s.forward[m] = begin == 0 ? ViewSelection::kBorderMessage : forward[m];
+  }
+  const int before = begin == 0 ? 0 : begin - 1;
+  Plane previous =
+      begin == 0 ? Unpack(task.planes[task.Pixel(line.Row(0), line.Col(0))])
+                 : task.previous[index];
+  Vec3 previous_ray = task.camera.Ray(line.Row(before), line.Col(before));
+  Lanes::Sync();
+
+  for (int i = begin; i < end; ++i) {
+    const int row = line.Row(i);
+    const int col = line.Col(i);
+    s.backward =
+        task.backward +
+        (static_cast<size_t>(index) * task.piece_length + i - begin) * n;
+    previous = SweepTaskPixel<Lanes, Sizes>(task, views, textures, row, col,
+                                            previous, previous_ray, samples, &s)
+                   .plane;
+    previous_ray = task.camera.Ray(row, col);
+  }
+
+  for (int m = Lanes::First(); m < n; m += Lanes::Step()) {
+    forward[m] = s.forward[m];
+  }
+  if (Lanes::First() == 0) {
+    task.previous[index] = previous;
+  }
+}
+
+// Computes the costs of a pixel's estimate, and sets its selection
+// probabilities to one half.
+template <class Lanes, class Sizes, class Textures>
+TAPA_INLINE void InitializePixel(const SweepTask& task,
+                                 const SourceCameras& views,
+                                 const Textures& textures, int row, int col,
+                                 float* words) {
+  const size_t pixel = task.Pixel(row, col);
+  const int n = task.num_views;
+  PatchSample* samples;
+  ArrangeScratch<Sizes>(n, words, &samples);
+  const PatchStatistics patch =
+      LoadPatch<Lanes, Sizes>(task.window, textures, row, col, samples);
+  const PixelSources<Lanes, Sizes, Textures> sources(task.window, textures,
+                                                     samples, patch, nullptr);
+  const Vec3 h = HomographyVector(task.camera, Unpack(task.planes[pixel]),
+                                  task.camera.Ray(row, col));
+  for (int m = Lanes::Group(); m < n; m += Lanes::kNumGroups) {
+    const float cost = sources.Cost(m, ComputeWarp(views, m, row, col, h));
+    if (Lanes::IsFirstOfGroup()) {
+      task.cost[pixel * n + m] = EncodeCost(cost);
+      task.prob[pixel * n + m] = EncodeProb(0.5f);
+    }
+  }
+  Lanes::Sync();
+}
+
+}  // namespace tapa
+
+#endif  // TAPA_SRC_MVS_CUDA_SWEEP_BODY_H_
