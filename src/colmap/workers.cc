@@ -9,6 +9,10 @@ namespace {
 
 constexpr int kCpu = -1;
 
+// Whether the GPU backend has computed on a GPU and was as good as the CPU. As
+// long as it has not, it is for those who ask for a GPU by its number.
+constexpr bool kTriedOnGpu = false;
+
 std::vector<int> ParseList(const std::string& text) {
   std::vector<int> numbers;
   std::istringstream list(text);
@@ -53,6 +57,13 @@ Workers ChooseWorkers(bool use_gpu, const std::string& gpu_index,
     workers.devices = {kCpu};
     workers.message = "There is no GPU to compute on (" + list.why_none +
                       "): the CPU is used.";
+    return workers;
+  }
+  if (gpu_index == "-1" && !kTriedOnGpu) {
+    workers.devices = {kCpu};
+    workers.message =
+        "The CPU is used: computing on GPUs has not been tried on one yet. "
+        "PatchMatchStereo.gpu_index 0 does it all the same.";
     return workers;
   }
   if (gpu_index == "-1") {

@@ -18,8 +18,9 @@ struct Workers {
 };
 
 // gpu_index: "-1", all GPUs, or numbers separated by commas; a GPU that is
-// named twice has two workers. Without any GPU that can be used the CPU is.
-// Throws Failure if the list is none, or names a GPU that is not there.
+// named twice has two workers. Without any GPU that can be used the CPU is; so
+// it is for "-1" as long as the GPU backend has never run on a GPU. Throws
+// Failure if the list is none, or names a GPU that is not there.
 Workers ChooseWorkers(bool use_gpu, const std::string& gpu_index,
                       const DeviceList& list);
 
