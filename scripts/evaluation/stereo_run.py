@@ -10,7 +10,8 @@ continued. record.json says how the results were made:
     set, method, seed    as in Run
     options              of patch_match_stereo, with those of the method
     sources, every       as in make_workspace.sh
-    version, machine     text; see machine.describe()
+    version, machine     text; see machine.describe(). version is null where the
+                         maps were there before: who made them is not known
     views, image_size    number of depth maps; [width, height] of the first
     done                 steps that are complete: stereo and the names of fusions
     seconds, cpu_seconds, peak_memory_bytes
@@ -183,6 +184,7 @@ def _new_record(run):
                if os.path.exists(run.path(name + ".ply"))]
     if _map_paths(run.folder):
         unknown.append("stereo")
+        record["version"] = None
     for measure in _MEASURES:
         record[measure] = {step: None for step in unknown}
     return record

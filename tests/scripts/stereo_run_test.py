@@ -151,6 +151,7 @@ class StereoRunTest(TestCase):
         self.assertIsNone(record["seconds"]["stereo"])
         self.assertIsNone(record["cpu_seconds"]["fused"])
         self.assertIsNone(record["peak_memory_bytes"]["stereo"])
+        self.assertIsNone(record["version"])
         self.assertGreater(record["seconds"]["fused_default"], 0)
         self.assertIsNone(stereo_run.total(record))
         self.assertEqual(record["views"], 4)
