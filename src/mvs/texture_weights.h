@@ -17,10 +17,10 @@ struct CostWeights {
 //   w+ = 0.8 + 0.2 t,   w- = 1.0 - 0.2 t
 //
 // and costs w- photo + w+ geom for the sweep's own hypotheses against
-// w+ photo + w- geom for planes. Planes are favoured where t < 0.5. Written such
-// that both weights are the same number where t = 0.5, which is the paper's t of
-// a flat patch: that has the same costs for all hypotheses, and ties go to the
-// planes, which are tried last.
+// w+ photo + w- geom for planes. Planes are favoured where t < 0.5. Written
+// such that both weights are the same number where t = 0.5, which is the
+// paper's t of a flat patch: that has the same costs for all hypotheses, and
+// ties go to the planes, which are tried last.
 struct TextureWeights {
   CostWeights own;
   CostWeights planar;
