@@ -10,6 +10,7 @@
 #include <optional>
 #include <set>
 #include <stdexcept>
+#include <system_error>
 #include <thread>
 #include <unordered_set>
 
@@ -423,7 +424,11 @@ bool StereoRun::ComputePass(Pass pass, const std::function<bool()>& stopped) {
   // The calling thread is the first worker.
   std::vector<std::thread> others;
   for (size_t i = 1; i < workers_.size(); ++i) {
-    others.emplace_back(work, workers_[i]);
+    try {
+      others.emplace_back(work, workers_[i]);
+    } catch (const std::system_error&) {
+      break;  // Those that could be started share out its views.
+    }
   }
   work(workers_[0]);
   for (std::thread& other : others) {
