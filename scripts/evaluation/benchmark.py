@@ -6,7 +6,7 @@ import re
 import shutil
 
 from . import (cloud_scores, depth_maps, depth_scans, depth_scores, files, links,
-               processes, stereo_run)
+               processes, run_record, stereo_run)
 from .methods import METHODS
 from .processes import Failure
 
@@ -235,9 +235,9 @@ def _attempt(failures, folder, steps):
             processes.say(f"FAILED {folder}: {text}")
             failures.append((folder, text))
             if step != "stereo":  # That records it by itself.
-                stereo_run.note_failure(folder, step, text)
+                run_record.note_failure(folder, step, text)
             return
-    stereo_run.note_failure(folder, "", None)
+    run_record.note_failure(folder, "", None)
 
 
 def _has_maps(folder):
@@ -248,7 +248,7 @@ def take_comparison(benchmark, folder, name, paths):
     """Links what another tool made into a folder of results."""
     paths = [os.path.abspath(path) for path in paths]
     photographs = links.photographs(benchmark.data, benchmark.every)
-    record = stereo_run.load_record(folder)
+    record = run_record.load(folder)
     if record is not None and record.get("compare") != paths:
         shutil.rmtree(folder)  # Links and scores of something else.
     # The other tool may have made maps of fewer photographs since.
@@ -267,7 +267,7 @@ def take_comparison(benchmark, folder, name, paths):
                 stereo_run.describe_maps(folder))
         else:
             links.link(path, os.path.join(folder, "fused.ply"))
-    files.write_json(os.path.join(folder, "record.json"), record)
+    run_record.save(folder, record)
 
 
 def missing_commands(benchmark, out, bin_dir, evaluator=None):

@@ -9,7 +9,7 @@ import os
 import re
 import shutil
 
-from . import files, processes, stereo_run
+from . import files, processes, run_record
 from .eth3d_download import seven_zip
 from .processes import Failure
 
@@ -30,7 +30,7 @@ def check_cloud(path):
 
 def runtime_text(record, cloud):
     """The content of a scene's text file."""
-    seconds = stereo_run.total(record, cloud)
+    seconds = run_record.total_seconds(record, cloud)
     if seconds is None:
         raise Failure("it is not known how long the run took, as part of it was killed or made "
                       "by another program; remove the run and make it again")
@@ -39,7 +39,7 @@ def runtime_text(record, cloud):
 
 def add_scene(folder, scene_name, run_folder, cloud):
     """Puts a scene's cloud and time into the folder of its track."""
-    record = stereo_run.load_record(run_folder)
+    record = run_record.load(run_folder)
     if record is None:
         raise Failure(f"{run_folder} has no run; make it with scripts/eth3d run")
     source = os.path.join(run_folder, cloud + ".ply")

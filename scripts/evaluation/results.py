@@ -7,7 +7,7 @@ import dataclasses
 import os
 import statistics
 
-from . import cloud_scores, depth_scores, stereo_run
+from . import cloud_scores, depth_scores, run_record
 
 KEYS = ("completeness", "accuracy", "f1")
 
@@ -47,7 +47,7 @@ class Score:
 
 def load_result(folder):
     """The result in a folder, None where there is no record."""
-    record = stereo_run.load_record(folder)
+    record = run_record.load(folder)
     if record is None:
         return None
     return Result(folder, record, depth_scores.load(folder),

@@ -5,30 +5,17 @@
 
 The folder becomes a COLMAP workspace (scripts/make_workspace.sh). A step that is
 done is not done again, and a workspace of scripts/evaluate_dataset.sh can be
-continued. record.json says how the results were made:
-
-    set, method, seed    as in Run
-    options              of patch_match_stereo, with those of the method
-    sources, every       as in make_workspace.sh
-    version, machine     text; see machine.describe(). version is null where the
-                         maps were there before: who made them is not known
-    views, image_size    number of depth maps; [width, height] of the first
-    done                 steps that are complete: stereo and the names of fusions
-    seconds, cpu_seconds, peak_memory_bytes
-                         by step. Times add up over the parts of a run that was
-                         stopped. null: not known, as another program did it
-    failed               null, or {"step", "message"} of the last attempt
+continued. record.json says how the results were made (run_record.py).
 """
 
 import dataclasses
 import glob
 import os
 
-from . import files, machine, processes
+from . import files, machine, processes, run_record
 from .methods import FUSION_HIGH, METHODS
 
 _SCRIPTS = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-_MEASURES = ("seconds", "cpu_seconds", "peak_memory_bytes")
 
 # Options of stereo_fusion by the name of the cloud, FOLDER/NAME.ply.
 FUSIONS = {"fused": FUSION_HIGH, "fused_default": []}
@@ -98,26 +85,15 @@ def fusion_command(run, name):
             run.path(name + ".new.ply"), *run.fusions[name]]
 
 
-def load_record(folder):
-    """The record of a run, None where there is none."""
-    return files.read_json(os.path.join(folder, "record.json"))
-
-
-def total(record, name="fused", measure="seconds"):
-    """A time of stereo and one fusion together; None if it is not known."""
-    values = [record[measure].get(step) for step in ("stereo", name)]
-    return None if None in values else sum(values)
-
-
 def is_complete(run):
-    record = load_record(run.folder)
+    record = run_record.load(run.folder)
     return record is not None and all(
         step in record["done"] for step in ["stereo", *run.fusions])
 
 
 def missing_commands(run):
     """The commands that complete() would run, in order."""
-    record = load_record(run.folder)
+    record = run_record.load(run.folder)
     done = record["done"] if record else []
     commands = []
     if "stereo" not in done:
@@ -161,8 +137,7 @@ def _fuse(run, record, name):
         return
     if not os.path.exists(run.path(name + ".ply")):
         processes.say(f"{run.folder}: {name}.ply ...")
-        for measure in _MEASURES:  # It begins anew.
-            record[measure].pop(name, None)
+        run_record.forget(record, name)
         _step(run, record, name, fusion_command(run, name), "fusion.log")
         for end in (".ply.vis", ".ply"):
             new = run.path(name + ".new" + end)
@@ -178,21 +153,22 @@ def _new_record(run):
         "every": run.every,
         "version": machine.program_version(run.bin_dir),
         "machine": machine.describe(), "views": None, "image_size": None,
-        "done": [], "failed": None}
+        "done": [], "failed": None,
+        "seconds": {}, "cpu_seconds": {}, "peak_memory_bytes": {}}
     # What is there already took a time that nobody knows.
     unknown = [name for name in run.fusions
                if os.path.exists(run.path(name + ".ply"))]
     if _map_paths(run.folder):
         unknown.append("stereo")
         record["version"] = None
-    for measure in _MEASURES:
-        record[measure] = {step: None for step in unknown}
+    for step in unknown:
+        run_record.set_usage(record, step, None)
     return record
 
 
 def _open_record(run):
     machine.find_program(run.bin_dir, "colmap")
-    record = load_record(run.folder)
+    record = run_record.load(run.folder)
     if record is None:
         return _new_record(run)
     for key, value in (("options", all_options(run)),
@@ -227,26 +203,18 @@ def _step(run, record, step, command, log):
     """Runs a program and adds what it took to the record."""
     try:
         # Should this process be killed, the time of this part is not known.
-        known = _measures(record, step)
-        _set(record, step, None)
-        files.write_json(run.path("record.json"), record)
+        known = run_record.known_usage(record, step)
+        run_record.set_usage(record, step, None)
+        run_record.save(run.folder, record)
         usage = processes.run(command, run.path(log))
-        _set(record, step, _sum(known, usage))
+        run_record.set_usage(record, step, _sum(known, usage))
     except processes.ProgramFailed as error:
-        _set(record, step, _sum(known, error.usage))
+        run_record.set_usage(record, step, _sum(known, error.usage))
         _fail(run, record, step, error)
     except processes.Interrupted as stop:
-        _set(record, step, _sum(known, stop.usage))
-        files.write_json(run.path("record.json"), record)
+        run_record.set_usage(record, step, _sum(known, stop.usage))
+        run_record.save(run.folder, record)
         raise
-
-
-def _measures(record, step):
-    """What the parts so far took, None if it is not known."""
-    if step not in record["seconds"]:
-        return processes.Usage(0, 0, 0)
-    values = [record[measure][step] for measure in _MEASURES]
-    return None if None in values else processes.Usage(*values)
 
 
 def _sum(known, usage):
@@ -257,30 +225,17 @@ def _sum(known, usage):
         max(known.peak_memory_bytes, usage.peak_memory_bytes))
 
 
-def _set(record, step, usage):
-    for measure in _MEASURES:
-        record[measure][step] = usage and getattr(usage, measure)
-
-
 def _fail(run, record, step, error):
     record["failed"] = {"step": step, "message": str(error)}
-    files.write_json(run.path("record.json"), record)
+    run_record.save(run.folder, record)
     raise error
-
-
-def note_failure(folder, step, error):
-    """Records why a later step failed, or with None that none did."""
-    record = load_record(folder)
-    if record is not None:
-        record["failed"] = error and {"step": step, "message": error}
-        files.write_json(os.path.join(folder, "record.json"), record)
 
 
 def _finish(run, record, step):
     record["failed"] = None
     if step not in record["done"]:
         record["done"].append(step)
-    files.write_json(run.path("record.json"), record)
+    run_record.save(run.folder, record)
 
 
 def _content(path):

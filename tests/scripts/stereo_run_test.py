@@ -15,7 +15,7 @@ import unittest
 _ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../..")
 sys.path.insert(0, os.path.join(_ROOT, "scripts"))
 from evaluation import (benchmark, cloud_scores, depth_scores, files,  # noqa: E402
-                        links, machine, processes, stereo_run)
+                        links, machine, processes, run_record, stereo_run)
 from evaluation.processes import Failure  # noqa: E402
 
 # Makes a depth map of 4x3 pixels for each photograph, a PLY, or fails if asked.
@@ -87,7 +87,7 @@ class StereoRunTest(TestCase):
         self.assertEqual(len(commands), 4)
         self.assertFalse(os.path.exists(run.folder))
         record = stereo_run.complete(run)
-        self.assertEqual(record, stereo_run.load_record(run.folder))
+        self.assertEqual(record, run_record.load(run.folder))
         self.assertTrue(stereo_run.is_complete(run))
         self.assertEqual(record["done"], ["stereo", "fused", "fused_default"])
         self.assertEqual(record["options"],
@@ -102,7 +102,7 @@ class StereoRunTest(TestCase):
             self.assertGreater(record["seconds"][step], 0)
             self.assertGreater(record["peak_memory_bytes"][step], 1e5)
         self.assertAlmostEqual(
-            stereo_run.total(record),
+            run_record.total_seconds(record),
             record["seconds"]["stereo"] + record["seconds"]["fused"])
         self.assertTrue(os.path.exists(run.path("fused.ply.vis")))
         self.assertEqual(glob.glob(run.path("*.new*")), [])
@@ -125,7 +125,7 @@ class StereoRunTest(TestCase):
         run = self.run_of()
         with self.assertRaisesRegex(Failure, "patch_match_stereo: no source"):
             stereo_run.complete(run)
-        record = stereo_run.load_record(run.folder)
+        record = run_record.load(run.folder)
         self.assertEqual(record["failed"]["step"], "stereo")
         self.assertIn("no source images", record["failed"]["message"])
         before = record["seconds"]["stereo"]
@@ -153,7 +153,7 @@ class StereoRunTest(TestCase):
         self.assertIsNone(record["peak_memory_bytes"]["stereo"])
         self.assertIsNone(record["version"])
         self.assertGreater(record["seconds"]["fused_default"], 0)
-        self.assertIsNone(stereo_run.total(record))
+        self.assertIsNone(run_record.total_seconds(record))
         self.assertEqual(record["views"], 4)
 
     def test_a_cloud_of_maps_that_are_no_more_is_made_anew(self):
@@ -193,7 +193,7 @@ class StereoRunTest(TestCase):
             stereo_run.complete(run)
         thread.join()
         self.assertEqual(caught.exception.number, signal.SIGINT)
-        before = stereo_run.load_record(run.folder)["seconds"]["stereo"]
+        before = run_record.load(run.folder)["seconds"]["stereo"]
         self.assertGreater(before, 0)
         os.remove(self.path("bin", "slow"))
         record = stereo_run.complete(run)
@@ -202,7 +202,7 @@ class StereoRunTest(TestCase):
     def test_time_of_a_part_that_was_killed_is_unknown(self):
         run = self.run_of()
         stereo_run.complete(run)
-        record = stereo_run.load_record(run.folder)
+        record = run_record.load(run.folder)
         # As it stands while a program runs.
         record["done"] = []
         record["seconds"] = {"stereo": None}
@@ -475,7 +475,7 @@ class BenchmarkCheckTest(TestCase):
         folder = self.path("out", "x-0")
         for count in (2, 1):
             benchmark.take_comparison(one, folder, "x", [self.path("maps")])
-            self.assertEqual(stereo_run.load_record(folder)["views"], count)
+            self.assertEqual(run_record.load(folder)["views"], count)
             os.remove(self.path("maps", "ab"[count - 1] + ".jpg.geometric.bin"))
 
     def test_bad_data_and_comparisons(self):
