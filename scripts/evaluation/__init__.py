@@ -3,7 +3,7 @@
 A run is one method with one seed on one set of photographs. It has a folder,
 OUT/SET/METHOD-SEED, which is a COLMAP workspace with these files beside it:
 
-    record.json         options, version, machine, times, memory (run_record.py)
+    record.json         options, versions, machines, times, memory (run_record.py)
     fused.ply           points, fused with TAPA's thresholds
     fused_default.ply   points, fused with COLMAP's own thresholds
     depth_scores.json   scores of the depth maps (depth_scores.py)

@@ -257,8 +257,7 @@ def take_comparison(benchmark, folder, name, paths):
     record = {"set": benchmark.name, "method": name, "seed": 0, "options": [],
               "compare": paths, "done": [], "failed": None, "views": None,
               "photographs": len(photographs),
-              "image_size": None, "version": None, "machine": None,
-              "seconds": {}, "cpu_seconds": {}, "peak_memory_bytes": {}}
+              "image_size": None, "made_with": {}, "seconds": {}, "cpu_seconds": {}, "peak_memory_bytes": {}}
     for path in paths:
         if os.path.isdir(path):
             links.make_view_workspace(

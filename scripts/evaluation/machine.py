@@ -1,5 +1,6 @@
 """What machine a run is made on, and with which version of the program."""
 
+import collections
 import os
 import platform
 import re
@@ -35,8 +36,8 @@ def _first(path, pattern):
 def describe():
     """{"cpu", "cores", "memory_bytes", "gpu", "system"}.
 
-    cores are those that this process may use. gpu is None: the program computes
-    on the CPU.
+    cores are those that this process may use. gpu is None; which one a program
+    computes on is known when it has said so: see gpus_in().
     """
     memory = _first("/proc/meminfo", r"^MemTotal:\s*(\d+) kB")
     return {
@@ -48,6 +49,21 @@ def describe():
         "system": (_first("/etc/os-release", r'^PRETTY_NAME="?([^"\n]*)')
                    or platform.system()),
     }
+
+
+def gpus_in(lines):
+    """Names of the GPUs on which colmap said that it computes, None for the CPU.
+
+    It says "Computing on GPU 0 (NAME), 1 (NAME)."; a GPU that computes two views
+    at a time stands there twice.
+    """
+    names = {}
+    for line in lines:
+        if line.startswith("Computing on GPU "):
+            names.update(re.findall(r"(\d+) \((.*?)\)(?=, \d+ \(|\.$)", line))
+    counts = collections.Counter(names.values())
+    return ", ".join(name if count == 1 else f"{count} x {name}"
+                     for name, count in counts.items()) or None
 
 
 def _output(command):

@@ -65,7 +65,6 @@ def run(command, log):
     received = []
     os.makedirs(os.path.dirname(log) or ".", exist_ok=True)
     with open(log, "ab") as file:
-        begin = file.seek(0, os.SEEK_END)
         file.write(os.fsencode(f"$ {command_text(command)}\n"))
         file.flush()
         start = time.monotonic()
@@ -96,16 +95,25 @@ def run(command, log):
     if received:
         raise Interrupted(received[0], usage)
     if process.returncode != 0:
-        raise ProgramFailed(_why(command, process.returncode, log, begin),
-                            usage)
+        raise ProgramFailed(_why(command, process.returncode, log), usage)
     return usage
 
 
-def _why(command, code, log, begin):
+def last_output(log):
+    """What the last command of a log printed, also if it was killed."""
+    try:
+        with open(log, encoding="utf-8", errors="replace") as file:
+            lines = file.read().splitlines()
+    except FileNotFoundError:
+        return []
+    begin = max((i for i, line in enumerate(lines) if line.startswith("$ ")),
+                default=-1)
+    return lines[begin + 1:]
+
+
+def _why(command, code, log):
     """What a program that failed said last, in one line."""
-    with open(log, "rb") as file:
-        file.seek(begin)
-        lines = file.read().decode(errors="replace").splitlines()[1:]
+    lines = last_output(log)
     name = os.path.basename(command[0])
     if name == "colmap" and len(command) > 1:
         name = command[1]

@@ -4,7 +4,7 @@ import os
 import urllib.parse
 
 from . import (depth_scores, paper_tables, figures, files, pictures, results,
-               stereo_run, tables)
+               run_record, stereo_run, tables)
 from .methods import ABLATION, TAPA_ABLATION
 from .processes import Failure
 
@@ -115,16 +115,25 @@ class SetReport:
         return "\n".join(text)
 
     def provenance(self):
-        """Version and machine of the runs, in one paragraph."""
+        """Versions and machines of the runs, in one paragraph."""
         runs = [run for method in self._methods
-                for run in self.found.get(method, [])
-                if run.record["version"] is not None]
-        if not runs:
+                for run in self.found.get(method, [])]
+        parts = [part for run in runs for part in run_record.parts(run.record)]
+        if not parts:
             return ""
-        versions = sorted({run.record["version"] for run in runs})
-        machines = sorted({machine_text(run.record["machine"])
-                           for run in runs})
-        return (f"Run with {'; '.join(versions)} on {'; '.join(machines)}.\n")
+        versions = sorted({part["version"] for part in parts})
+        machines = sorted({machine_text(part["machine"]) for part in parts})
+        text = f"Run with {'; '.join(versions)} on {'; '.join(machines)}"
+        gpus = set().union(*(run_record.stereo_gpus(run.record) for run in runs))
+        if gpus - {None}:
+            text += ", stereo on " + "; ".join(sorted(
+                gpu or "the CPU" for gpu in gpus))
+        mixed = [f"{run.method}, seed {run.record['seed']}" for run in runs
+                 if run_record.is_mixed(run.record)]
+        if mixed:
+            text += (". Not made in one piece, by one version on one machine: "
+                     + "; ".join(mixed))
+        return text + ".\n"
 
     def missing(self):
         """What has no result, a line each."""
@@ -212,11 +221,11 @@ BLOCKS = {"depth": SetReport.depth, "low_texture": SetReport.low_texture,
 
 
 def machine_text(machine):
-    """"AMD EPYC, 2 cores, 25 GB"."""
+    """"AMD EPYC, 2 cores, 25 GB"; not the GPU, as only stereo uses it."""
     text = f"{machine['cpu']}, {machine['cores']} cores"
     if machine["memory_bytes"]:
         text += f", {machine['memory_bytes'] / 1e9:.0f} GB"
-    return text + (f", {machine['gpu']}" if machine["gpu"] else "")
+    return text
 
 
 def describe_set(benchmark):

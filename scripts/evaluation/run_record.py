@@ -3,8 +3,11 @@
     set, method, seed    as in stereo_run.Run
     options              of patch_match_stereo, with those of the method
     sources, every       as in make_workspace.sh
-    version, machine     text; see machine.describe(). version is null where the
-                         maps were there before: who made them is not known
+    made_with            by step, a list of {"version", "machine"}: more than one
+                         where a run was stopped and went on with another. See
+                         machine.describe(); machine.gpu names the GPUs that the
+                         step computed on. null where the maps or the points were
+                         there before: who made them is not known
     views, image_size    number of depth maps; [width, height] of the first
     done                 steps that are complete: stereo and the names of fusions
     seconds, cpu_seconds, peak_memory_bytes
@@ -13,6 +16,7 @@
     failed               null, or {"step", "message"} of the last attempt
 """
 
+import copy
 import os
 
 from . import files, processes
@@ -22,7 +26,20 @@ _MEASURES = ("seconds", "cpu_seconds", "peak_memory_bytes")
 
 def load(folder):
     """The record of a run, None where there is none."""
-    return files.read_json(_path(folder))
+    record = files.read_json(_path(folder))
+    if record is not None:
+        _modernize(record)
+    return record
+
+
+def _modernize(record):
+    """Before made_with, records had one version and one machine for all."""
+    if "made_with" not in record and "version" in record:
+        version, machine = record.pop("version"), record.pop("machine", None)
+        record["made_with"] = {
+            step: [{"version": version,
+                    "machine": copy.deepcopy(version and machine)}]
+            for step in record.get("seconds", {})}
 
 
 def save(folder, record):
@@ -35,8 +52,54 @@ def _path(folder):
 
 def forget(record, step):
     """As if a step had never begun."""
-    for measure in _MEASURES:
-        record[measure].pop(step, None)
+    for key in ("made_with", *_MEASURES):
+        record[key].pop(step, None)
+
+
+def set_unknown(record, step):
+    """Of a step that was done before, nobody knows by whom."""
+    record["made_with"][step] = [{"version": None, "machine": None}]
+    set_usage(record, step, None)
+
+
+def begin_part(record, step, version, machine):
+    """Notes with what a step begins or goes on."""
+    record["made_with"].setdefault(step, []).append(
+        {"version": version, "machine": machine})
+
+
+def end_part(record, step, gpu):
+    """Notes on which GPU the last part of a step was computed, None for the CPU.
+
+    A part is not listed twice.
+    """
+    parts = record["made_with"].get(step) or []
+    if parts and parts[-1]["machine"]:
+        parts[-1]["machine"]["gpu"] = gpu
+        if parts[-1] in parts[:-1]:
+            parts.pop()
+
+
+def parts(record):
+    """All {"version", "machine"} that are known of the steps of a run."""
+    return [part for step in record["made_with"].values() for part in step
+            if part["version"] is not None]
+
+
+def stereo_gpus(record):
+    """What stereo computed on: names of GPUs, and None for the CPU."""
+    return {part["machine"]["gpu"] for part in record["made_with"].get("stereo", ())
+            if part["machine"]}
+
+
+def is_mixed(record):
+    """Whether parts of a run were made by other versions or on other machines."""
+    steps = record["made_with"]
+    # Fusion never uses a GPU.
+    made = [(part["version"], part["machine"] and {**part["machine"], "gpu": None})
+            for step in steps.values() for part in step]
+    return (any(one != made[0] for one in made)
+            or len(steps.get("stereo", ())) > 1)
 
 
 def known_usage(record, step):

@@ -150,19 +150,14 @@ def _new_record(run):
     record = {
         "set": run.set, "method": run.method, "seed": run.seed,
         "options": all_options(run), "sources": run.sources,
-        "every": run.every,
-        "version": machine.program_version(run.bin_dir),
-        "machine": machine.describe(), "views": None, "image_size": None,
+        "every": run.every, "made_with": {}, "views": None, "image_size": None,
         "done": [], "failed": None,
         "seconds": {}, "cpu_seconds": {}, "peak_memory_bytes": {}}
-    # What is there already took a time that nobody knows.
-    unknown = [name for name in run.fusions
-               if os.path.exists(run.path(name + ".ply"))]
     if _map_paths(run.folder):
-        unknown.append("stereo")
-        record["version"] = None
-    for step in unknown:
-        run_record.set_usage(record, step, None)
+        run_record.set_unknown(record, "stereo")
+    for name in run.fusions:
+        if os.path.exists(run.path(name + ".ply")):
+            run_record.set_unknown(record, name)
     return record
 
 
@@ -200,25 +195,33 @@ def _make_workspace(run, record):
 
 
 def _step(run, record, step, command, log):
-    """Runs a program and adds what it took to the record."""
-    try:
-        # Should this process be killed, the time of this part is not known.
-        known = run_record.known_usage(record, step)
-        run_record.set_usage(record, step, None)
-        run_record.save(run.folder, record)
-        usage = processes.run(command, run.path(log))
+    """Runs a program, and adds to the record with what and what it took."""
+    log = run.path(log)
+
+    def end_part(usage):
         run_record.set_usage(record, step, _sum(known, usage))
+        run_record.end_part(record, step,
+                            machine.gpus_in(processes.last_output(log)))
+
+    # Should this process be killed, the time of this part is not known.
+    known = run_record.known_usage(record, step)
+    end_part(None)  # The one before may have been killed.
+    run_record.begin_part(record, step, machine.program_version(run.bin_dir),
+                          machine.describe())
+    run_record.save(run.folder, record)
+    try:
+        end_part(processes.run(command, log))
     except processes.ProgramFailed as error:
-        run_record.set_usage(record, step, _sum(known, error.usage))
+        end_part(error.usage)
         _fail(run, record, step, error)
     except processes.Interrupted as stop:
-        run_record.set_usage(record, step, _sum(known, stop.usage))
+        end_part(stop.usage)
         run_record.save(run.folder, record)
         raise
 
 
 def _sum(known, usage):
-    if known is None:
+    if None in (known, usage):
         return None
     return processes.Usage(
         known.seconds + usage.seconds, known.cpu_seconds + usage.cpu_seconds,

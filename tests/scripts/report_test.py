@@ -30,6 +30,11 @@ def depth_part(shares):
             "tolerances": entries}
 
 
+def made_with(version="COLMAP 3.8", gpu=None):
+    return {"version": version, "machine": {
+        "cpu": "abacus", "cores": 2, "memory_bytes": 8e9, "gpu": gpu}}
+
+
 def write_result(out, name, method, seed=0, depth=None, low=None, f1=None,
                  options=(), **record):
     """depth, low: as depth_part(); f1: of points at 2 cm, by cloud."""
@@ -38,9 +43,8 @@ def write_result(out, name, method, seed=0, depth=None, low=None, f1=None,
         "set": name, "method": method, "seed": seed, "sources": 10, "every": 1,
         "options": ["--PatchMatchStereo.seed", str(seed),
                     *METHODS.get(method, []), *options],
-        "version": "COLMAP 3.8", "views": 4, "image_size": [500, 500],
-        "machine": {"cpu": "abacus", "cores": 2, "memory_bytes": 8e9,
-                    "gpu": None},
+        "made_with": {"stereo": [made_with()]}, "views": 4,
+        "image_size": [500, 500],
         "done": ["stereo"], "failed": None, "seconds": {"stereo": 70.0},
         "cpu_seconds": {"stereo": 120.0},
         "peak_memory_bytes": {"stereo": 300e6}, **record})
@@ -295,6 +299,21 @@ class ReportTest(TestCase):
                       text)
         self.assertTrue(os.path.exists(self.path("out/figures/s_errors.png")))
         self.assertIn("plain,0.02,m,0.25,0.5", self.read("out/tables/s_depth.csv"))
+
+    def test_runs_in_parts(self):
+        write_result(self.path("out"), "s", "plain", 3, made_with={
+            "stereo": [made_with(gpu="NVIDIA X"), made_with("COLMAP 3.9")],
+            "fused": [made_with("COLMAP 3.9")]})
+        one = benchmark.Benchmark("s", self.path("s"), methods=["plain"], seeds=[3])
+        self.assertIn(
+            "Run with COLMAP 3.8; COLMAP 3.9 on abacus, 2 cores, 8 GB, stereo on "
+            "NVIDIA X; the CPU. Not made in one piece, by one version on one "
+            "machine: plain, seed 3.\n", self.report_of(one))
+        # Fusion does not use the GPU.
+        write_result(self.path("out"), "s", "plain", 3, made_with={
+            "stereo": [made_with(gpu="NVIDIA X")], "fused": [made_with()]})
+        self.assertIn("Run with COLMAP 3.8 on abacus, 2 cores, 8 GB, stereo on "
+                      "NVIDIA X.\n", self.report_of(one))
 
     def test_names_with_spaces(self):
         write_result(self.path("out"), "a b", "plain", depth={(0.02, "m"): 0.25})

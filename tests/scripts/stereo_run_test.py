@@ -31,6 +31,7 @@ patch_match_stereo)
     trap 'exit 130' INT TERM; touch "$(dirname "$0")/started"
     while true; do sleep 0.05; done
   fi
+  cat "$(dirname "$0")/says" 2>/dev/null
   for photo in "$3"/images/*; do
     printf '4&3&1&' > "$3/stereo/depth_maps/$(basename "$photo").geometric.bin"
     head -c 48 /dev/zero >> "$3/stereo/depth_maps/$(basename "$photo").geometric.bin"
@@ -95,10 +96,13 @@ class StereoRunTest(TestCase):
                           "--PatchMatchStereo.tapa", "1",
                           "--PatchMatchStereo.num_iterations", "1"])
         self.assertEqual((record["views"], record["image_size"]), (4, [4, 3]))
-        self.assertTrue(record["version"].startswith(
-            "COLMAP 3.8 (Commit 1234 without CUDA)"), record["version"])
-        self.assertGreater(record["machine"]["cores"], 0)
+        self.assertEqual(list(record["made_with"]), record["done"])
+        self.assertFalse(run_record.is_mixed(record))
         for step in record["done"]:
+            (part,) = record["made_with"][step]
+            self.assertTrue(part["version"].startswith(
+                "COLMAP 3.8 (Commit 1234 without CUDA)"), part["version"])
+            self.assertEqual(part["machine"], machine.describe())
             self.assertGreater(record["seconds"][step], 0)
             self.assertGreater(record["peak_memory_bytes"][step], 1e5)
         self.assertAlmostEqual(
@@ -151,7 +155,11 @@ class StereoRunTest(TestCase):
         self.assertIsNone(record["seconds"]["stereo"])
         self.assertIsNone(record["cpu_seconds"]["fused"])
         self.assertIsNone(record["peak_memory_bytes"]["stereo"])
-        self.assertIsNone(record["version"])
+        unknown = {"version": None, "machine": None}
+        self.assertEqual(record["made_with"]["fused"], [unknown])
+        # This program looked whether all maps were there.
+        self.assertEqual(record["made_with"]["stereo"][0], unknown)
+        self.assertTrue(run_record.is_mixed(record))
         self.assertGreater(record["seconds"]["fused_default"], 0)
         self.assertIsNone(run_record.total_seconds(record))
         self.assertEqual(record["views"], 4)
@@ -208,6 +216,47 @@ class StereoRunTest(TestCase):
         record["seconds"] = {"stereo": None}
         files.write_json(run.path("record.json"), record)
         self.assertIsNone(stereo_run.complete(run)["seconds"]["stereo"])
+
+    def test_gpus_are_recorded_where_they_were_used(self):
+        says = write(self.path("bin", "says"), "Computing on GPU 0 (A), 1 (B).\n")
+        run = self.run_of()
+        made_with = stereo_run.complete(run)["made_with"]
+        self.assertEqual(made_with["stereo"][0]["machine"]["gpu"], "A, B")
+        self.assertIsNone(made_with["fused"][0]["machine"]["gpu"])
+        # A run that was killed there, and went on upon the CPU.
+        record = run_record.load(run.folder)
+        record["done"] = []
+        record["made_with"]["stereo"][0]["machine"]["gpu"] = None
+        run_record.save(run.folder, record)
+        os.remove(says)
+        record = stereo_run.complete(run)
+        self.assertEqual([part["machine"]["gpu"]
+                          for part in record["made_with"]["stereo"]], ["A, B", None])
+        self.assertEqual(run_record.stereo_gpus(record), {"A, B", None})
+        self.assertTrue(run_record.is_mixed(record))
+
+    def test_a_run_that_goes_on_with_another_version_says_so(self):
+        write(self.path("bin", "fail"))
+        for _ in range(2):  # The same twice is one part.
+            with self.assertRaises(Failure):
+                stereo_run.complete(self.run_of())
+        os.remove(self.path("bin", "fail"))
+        write(self.path("bin", "colmap"), _COLMAP.replace("1234", "5678"), True)
+        record = stereo_run.complete(self.run_of())
+        self.assertEqual([part["version"][19:23]
+                          for part in record["made_with"]["stereo"]],
+                         ["1234", "5678"])
+        self.assertEqual(len(record["made_with"]["fused"]), 1)
+        self.assertTrue(run_record.is_mixed(record))
+
+    def test_a_record_of_one_version_for_all_is_read(self):
+        run = self.run_of()
+        record = stereo_run.complete(run)
+        (part,) = record["made_with"]["stereo"]
+        old = {**record, **part}
+        del old["made_with"]
+        run_record.save(run.folder, old)
+        self.assertEqual(run_record.load(run.folder), record)
 
     def test_missing_programs_and_broken_records(self):
         with self.assertRaisesRegex(Failure, "has no colmap; run scripts/build"):
@@ -525,6 +574,15 @@ class MachineTest(unittest.TestCase):
         self.assertEqual(found["cores"], len(os.sched_getaffinity(0)))
         self.assertGreater(found["memory_bytes"], 1e8)
         self.assertIsNone(found["gpu"])
+
+    def test_gpus_that_colmap_names(self):
+        for line, text in (
+                ("Computing on GPU 0 (NVIDIA H100 80GB HBM3).", "NVIDIA H100 80GB HBM3"),
+                ("Computing on GPU 0 (A (Laptop)), 0 (A (Laptop)), 2 (B).",
+                 "A (Laptop), B"),
+                ("Computing on GPU 1 (A), 3 (A).", "2 x A"),
+                ("There is no GPU to compute on (none): the CPU is used.", None)):
+            self.assertEqual(machine.gpus_in(["Reading", line, "Elapsed"]), text)
 
 
 if __name__ == "__main__":
