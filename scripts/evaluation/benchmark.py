@@ -255,7 +255,7 @@ def take_comparison(benchmark, folder, name, paths):
     shutil.rmtree(os.path.join(folder, "stereo"), ignore_errors=True)
     os.makedirs(folder, exist_ok=True)
     record = {"set": benchmark.name, "method": name, "seed": 0, "options": [],
-              "compare": paths, "done": [], "failed": None, "views": None,
+              "fusion_options": {}, "compare": paths, "done": [], "failed": None, "views": None,
               "photographs": len(photographs),
               "image_size": None, "made_with": {}, "seconds": {}, "cpu_seconds": {}, "peak_memory_bytes": {}}
     for path in paths:

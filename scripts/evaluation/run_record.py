@@ -2,6 +2,7 @@
 
     set, method, seed    as in stereo_run.Run
     options              of patch_match_stereo, with those of the method
+    fusion_options       of stereo_fusion, by cloud. null: not known
     sources, every       as in make_workspace.sh
     made_with            by step, a list of {"version", "machine"}: more than one
                          where a run was stopped and went on with another. See
@@ -33,8 +34,9 @@ def load(folder):
 
 
 def _modernize(record):
-    """Before made_with, records had one version and one machine for all."""
+    """Records once had one version and machine for all steps, and no thresholds."""
     if "made_with" not in record and "version" in record:
+        record["fusion_options"] = {}
         version, machine = record.pop("version"), record.pop("machine", None)
         record["made_with"] = {
             step: [{"version": version,

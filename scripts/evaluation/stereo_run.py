@@ -138,6 +138,7 @@ def _fuse(run, record, name):
     if not os.path.exists(run.path(name + ".ply")):
         processes.say(f"{run.folder}: {name}.ply ...")
         run_record.forget(record, name)
+        record["fusion_options"][name] = run.fusions[name]
         _step(run, record, name, fusion_command(run, name), "fusion.log")
         for end in (".ply.vis", ".ply"):
             new = run.path(name + ".new" + end)
@@ -149,8 +150,8 @@ def _fuse(run, record, name):
 def _new_record(run):
     record = {
         "set": run.set, "method": run.method, "seed": run.seed,
-        "options": all_options(run), "sources": run.sources,
-        "every": run.every, "made_with": {}, "views": None, "image_size": None,
+        "options": all_options(run), "fusion_options": {},
+        "sources": run.sources, "every": run.every, "made_with": {}, "views": None, "image_size": None,
         "done": [], "failed": None,
         "seconds": {}, "cpu_seconds": {}, "peak_memory_bytes": {}}
     if _map_paths(run.folder):
@@ -158,6 +159,7 @@ def _new_record(run):
     for name in run.fusions:
         if os.path.exists(run.path(name + ".ply")):
             run_record.set_unknown(record, name)
+            record["fusion_options"][name] = None
     return record
 
 
@@ -174,7 +176,20 @@ def _open_record(run):
             raise processes.Failure(
                 f"{run.folder} was made with {key} {record[key]}, not {value}; "
                 "remove it or name another folder for results")
+    for name in run.fusions:
+        _check_fusion(run, record, name)
     return record
+
+
+def _check_fusion(run, record, name):
+    """Refuses points that were fused with other options."""
+    cloud, asked = run.path(name + ".ply"), run.fusions[name]
+    known = record["fusion_options"].get(name)
+    if known is not None and known != asked and os.path.exists(cloud):
+        known, asked = (" ".join(words) or "none" for words in (known, asked))
+        raise processes.Failure(
+            f"{cloud} was made with the fusion options {known}, not {asked}; "
+            "remove it to make it anew")
 
 
 def _make_workspace(run, record):

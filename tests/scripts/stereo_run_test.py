@@ -95,6 +95,7 @@ class StereoRunTest(TestCase):
                          ["--PatchMatchStereo.seed", "3",
                           "--PatchMatchStereo.tapa", "1",
                           "--PatchMatchStereo.num_iterations", "1"])
+        self.assertEqual(record["fusion_options"], stereo_run.FUSIONS)
         self.assertEqual((record["views"], record["image_size"]), (4, [4, 3]))
         self.assertEqual(list(record["made_with"]), record["done"])
         self.assertFalse(run_record.is_mixed(record))
@@ -146,6 +147,19 @@ class StereoRunTest(TestCase):
             with self.assertRaisesRegex(Failure, f"made with {part}"):
                 stereo_run.complete(self.run_of(**values))
 
+    def test_points_of_other_thresholds_are_refused_until_they_are_removed(self):
+        stereo_run.complete(self.run_of())
+        other = self.run_of(fusions={"fused": ["--StereoFusion.max_reproj_error", "3"]})
+        with self.assertRaisesRegex(
+                Failure, "fused.ply was made with the fusion options "
+                ".*max_reproj_error 1 .*, not .*max_reproj_error 3; remove it"):
+            stereo_run.complete(other)
+        self.assertEqual(len(self.calls("stereo_fusion")), 2)
+        os.remove(other.path("fused.ply"))
+        record = stereo_run.complete(other)
+        self.assertEqual(record["fusion_options"],
+                         {**other.fusions, "fused_default": []})
+
     def test_times_of_a_finished_workspace_are_unknown(self):
         run = self.run_of()
         stereo_run.complete(run)
@@ -155,6 +169,8 @@ class StereoRunTest(TestCase):
         self.assertIsNone(record["seconds"]["stereo"])
         self.assertIsNone(record["cpu_seconds"]["fused"])
         self.assertIsNone(record["peak_memory_bytes"]["stereo"])
+        self.assertEqual(record["fusion_options"],
+                         {"fused": None, "fused_default": []})
         unknown = {"version": None, "machine": None}
         self.assertEqual(record["made_with"]["fused"], [unknown])
         # This program looked whether all maps were there.
@@ -254,9 +270,11 @@ class StereoRunTest(TestCase):
         record = stereo_run.complete(run)
         (part,) = record["made_with"]["stereo"]
         old = {**record, **part}
-        del old["made_with"]
+        for key in ("made_with", "fusion_options"):
+            del old[key]
         run_record.save(run.folder, old)
-        self.assertEqual(run_record.load(run.folder), record)
+        self.assertEqual(run_record.load(run.folder), {**record, "fusion_options": {}})
+        stereo_run.complete(run)  # They are taken for these.
 
     def test_missing_programs_and_broken_records(self):
         with self.assertRaisesRegex(Failure, "has no colmap; run scripts/build"):
