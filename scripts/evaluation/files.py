@@ -1,5 +1,6 @@
 """Files that appear under their name only when they are complete."""
 
+import fcntl
 import json
 import os
 import zlib
@@ -42,6 +43,26 @@ def read_json(path):
     except (OSError, ValueError) as error:
         raise Failure(f"{path} cannot be read ({error}); remove it to make it "
                       "anew") from error
+
+
+def lock(folder, name):
+    """Keeps other processes of a name out of a folder, by FOLDER/.NAME.lock.
+
+    Until the file that is returned is closed, or this process ends in any way.
+    Raises Failure if another process is at work there.
+    """
+    try:
+        os.makedirs(folder, exist_ok=True)
+        file = open(os.path.join(folder, f".{name}.lock"), "wb")
+    except OSError as error:
+        raise Failure(f"{folder} cannot be written: {error.strerror}") from error
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError as error:
+        file.close()
+        raise Failure(f"another {name} is at work in {folder}; wait until it ends, "
+                      "or name another folder") from error
+    return file
 
 
 def fingerprint(*paths):

@@ -177,6 +177,7 @@ class BenchmarkTest(tiny.TestCase):
                 self.assertIsNone(process.poll())
                 time.sleep(0.05)
             time.sleep(0.2)
+            self.check_others_are_kept_out()
             process.send_signal(signal.SIGTERM)
             _, errors = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 130)
@@ -187,6 +188,17 @@ class BenchmarkTest(tiny.TestCase):
         self.assertEqual(result.returncode, 0, result.stderr)
         after = self.read_json("out/room/plain-0/record.json")
         self.assertGreater(after["seconds"]["stereo"], before["seconds"]["stereo"])
+
+    def check_others_are_kept_out(self):
+        other = self.room("--methods", "tapa", "--no_clouds")
+        self.assertEqual(other.returncode, 1)
+        self.assertIn("ERROR: another benchmark is at work in "
+                      + self.path("out") + ";", other.stderr)
+        self.assertEqual(other.stderr.count("\n"), 1, other.stderr)
+        self.assertFalse(os.path.exists(self.path("out/room/tapa-0")))
+        look = self.room("--methods", "plain", "--no_clouds", "--report_only")
+        self.assertEqual(look.returncode, 0, look.stderr)
+        self.assertIn("not finished", self.read("out/report.md"))
 
     def test_a_workspace_of_evaluate_dataset_is_continued(self):
         made = subprocess.run(

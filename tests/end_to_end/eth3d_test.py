@@ -636,6 +636,9 @@ class Pipeline(Case):
             stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
             env=dict(os.environ, TAPA_BIN_DIR=BIN_DIR))
         self.assertIn("stereo ...", process.stderr.readline())
+        other = self.eth3d("run", "--methods", "plain")
+        self.assert_failed(other, f"another eth3d-run is at work in {self.folder};")
+        self.assert_done(self.eth3d("run", "--methods", "plain", "--dry_run"))
         time.sleep(0.5)
         process.send_signal(signal.SIGINT)
         _, errors = process.communicate(timeout=120)

@@ -328,6 +328,24 @@ class FilesTest(TestCase):
         with self.assertRaisesRegex(Failure, "x cannot be written: "):
             files.write_text(os.path.join(path, "x"), "text")
 
+    def test_a_lock_keeps_others_out(self):
+        folder = self.path("new")
+        script = ("import sys\n"
+                  f"sys.path.insert(0, {os.path.join(_ROOT, 'scripts')!r})\n"
+                  "from evaluation import files\n"
+                  f"files.lock({folder!r}, sys.argv[1])\n")
+
+        def other(name):
+            return subprocess.run([sys.executable, "-B", "-c", script, name], text=True,
+                                  stderr=subprocess.PIPE, check=False).stderr
+
+        with files.lock(folder, "run"):
+            self.assertIn(f"Failure: another run is at work in {folder}; ", other("run"))
+            self.assertEqual(other("report"), "")
+        self.assertEqual(other("run"), "")
+        with self.assertRaisesRegex(Failure, "x cannot be written: Not a dir"):
+            files.lock(os.path.join(write(self.path("file")), "x"), "run")
+
     def test_fingerprints(self):
         write(self.path("a", "b.bin"), "x" * 100000)
         before = files.fingerprint(self.path("a"))
