@@ -16,7 +16,7 @@ packages=(
   liblz4-dev libmetis-dev libqt5opengl5-dev libsqlite3-dev libsuitesparse-dev
   qtbase5-dev
   # The engine, the scores, the tests and the benchmarks.
-  libbenchmark-dev libgtest-dev libhwy-dev libopencv-contrib-dev libopencv-dev
+  libbenchmark-dev libboost-context-dev libgtest-dev libhwy-dev libopencv-contrib-dev libopencv-dev
   libnanoflann-dev libpugixml-dev nlohmann-json3-dev
 )
 

@@ -1,8 +1,10 @@
 #ifndef TAPA_SRC_MVS_BACKEND_H_
 #define TAPA_SRC_MVS_BACKEND_H_
 
+#include <cstdint>
 #include <functional>
 #include <memory>
+#include <vector>
 
 #include "src/mvs/estimate_depth.h"
 #include "src/mvs/plane_set.h"
@@ -40,6 +42,11 @@ class Backend {
   // another function.
   virtual const Map<float>& Depth() = 0;
   virtual const Map<Vec3>& Normal() = 0;
+
+  // Costs of the estimates as they are between two sweeps, in fixed point
+  // (EncodeCost), at [pixel * number of views + view]. For tests. Gone after a
+  // sweep with the filter.
+  virtual std::vector<uint16_t> Costs() const = 0;
 
   // Moves the result out; the backend cannot be used any more.
   virtual Estimate TakeResult() = 0;

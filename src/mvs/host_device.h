@@ -10,4 +10,9 @@
 #define TAPA_INLINE inline __attribute__((always_inline))
 #endif
 
+// Whether this is code for a GPU, or for the one that tests emulate.
+#if defined(__CUDA_ARCH__) || defined(TAPA_EMULATED_CUDA)
+#define TAPA_ON_DEVICE
+#endif
+
 #endif  // TAPA_SRC_MVS_HOST_DEVICE_H_

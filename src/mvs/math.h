@@ -12,7 +12,7 @@ namespace tapa {
 // e^x for x <= 0 with a relative error below 3e-7, 0 below -87. Unlike
 // std::exp, a loop over it can be vectorized.
 TAPA_INLINE float ExpNegative(float x) {
-#if defined(__CUDA_ARCH__)
+#if defined(TAPA_ON_DEVICE)
   return __expf(x);
 #else
   // e^x = 2^n e^r with |r| <= ln(2) / 2. Adding 1.5 * 2^23 rounds to integer.
@@ -36,7 +36,7 @@ TAPA_INLINE float ExpNegative(float x) {
 
 // 1 / x, on a GPU with an error of one unit in the last place.
 TAPA_INLINE float Reciprocal(float x) {
-#if defined(__CUDA_ARCH__)
+#if defined(TAPA_ON_DEVICE)
   return __fdividef(1.0f, x);
 #else
   return 1.0f / x;

@@ -1,5 +1,5 @@
-// Tests of the backend that need a GPU; without one they say that they are
-// skipped. Those of the kernels that need none are in cuda_sweep_test.cc. This
+// Tests of the backend on a GPU; without one they say that they are skipped,
+// but they also run on the emulated one (emulated_cuda/emulator.h). This
 // program is part of the bundle for machines on which nothing can be installed
 // (scripts/gpu_bundle.sh), so it does without TAPA's stages and their OpenCV.
 
@@ -39,7 +39,7 @@ class CudaDeviceTest : public testing::Test {
   }
 };
 
-SyntheticPlane MakeScene(int num_sources, int width = 160, int height = 120) {
+SyntheticPlane MakeScene(int num_sources, int width = 96, int height = 72) {
   SyntheticOptions options;
   options.width = width;
   options.height = height;
@@ -120,7 +120,7 @@ TEST_F(CudaDeviceTest, KernelsAgree) {
   };
   for (const Case c : {Case{6, 5, 1}, Case{40, 5, 1}, Case{5, 3, 1},
                        Case{5, 10, 2}, Case{3, 32, 1}}) {
-    const SyntheticPlane scene = MakeScene(c.num_sources, 120, 80);
+    const SyntheticPlane scene = MakeScene(c.num_sources, 60, 45);
     Options options = SweepOptions(false);
     options.window_radius = c.window_radius;
     options.window_step = c.window_step;

@@ -1,4 +1,5 @@
-// Whole estimations on a GPU; without one they are skipped.
+// Whole estimations on a GPU; without one they are skipped, but they also run
+// on the emulated one (emulated_cuda/emulator.h).
 
 #include <gtest/gtest.h>
 
@@ -14,10 +15,10 @@ namespace {
 
 SyntheticPlane MakeScene() {
   SyntheticOptions options;
-  options.width = 160;
-  options.height = 120;
+  options.width = 96;
+  options.height = 72;
   options.num_sources = 6;
-  options.focal_length = 190;
+  options.focal_length = 115;
   options.wall = 0.4;
   options.noise = 2;
   return SyntheticPlane(options);

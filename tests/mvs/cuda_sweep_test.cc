@@ -1,123 +1,23 @@
-// The CUDA backend's kernels on the host: lane by lane in an emulated warp, and
-// compared with the CPU backend.
+// Sweeps of the CUDA backend on an emulated GPU, compared with the CPU backend.
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <numeric>
 #include <random>
 
-#include "src/mvs/cpu/sweep.h"
-#include "tests/mvs/host_kernels.h"
+#include "src/mvs/backend.h"
+#include "src/mvs/cuda/layout.h"
+#include "src/mvs/cuda/packed_plane.h"
+#include "src/mvs/cuda/sweep_task.h"
+#include "src/mvs/devices.h"
+#include "tests/mvs/emulated_cuda/emulator.h"
 #include "tests/mvs/sweep_start.h"
 #include "tests/mvs/synthetic.h"
 
 namespace tapa {
 namespace {
-
-TEST(HostWarp, FindsLanesThatMissEachOther) {
-  EXPECT_THROW(HostWarp::Run([] {
-                 if (HostWarp::Lane() != 7) {
-                   HostWarp::Sync();
-                 }
-               }),
-               std::logic_error);
-  EXPECT_THROW(HostWarp::Run([] {
-                 if (HostWarp::Lane() < 16) {
-                   HostWarp::Sync();
-                 } else {
-                   HostWarp::Shuffle(0, 16, 32);
-                   HostWarp::Shuffle(0, HostWarp::Lane(), 4);
-                   HostWarp::Sync();
-                 }
-                 HostWarp::Sync();
-               }),
-               std::logic_error);
-}
-
-TEST(HostWarp, ShowsAMissingSync) {
-  const auto sum_of_neighbours = [](uint32_t order, bool sync) {
-    std::vector<int> shared(HostWarp::kSize, 0);
-    std::vector<int> seen(HostWarp::kSize);
-    HostWarp::Run(
-        [&] {
-          const int lane = HostWarp::Lane();
-          shared[lane] = lane;
-          if (sync) {
-            HostWarp::Sync();
-          }
-          seen[lane] = shared[(lane + 1) % HostWarp::kSize];
-        },
-        order);
-    return seen;
-  };
-  EXPECT_EQ(sum_of_neighbours(0, true), sum_of_neighbours(5, true));
-  EXPECT_NE(sum_of_neighbours(0, false), sum_of_neighbours(5, false));
-}
-
-TEST(WarpLanes, SumAcrossLanes) {
-  for (const int count : {1, 5, 20, 32, 33, 64, 77}) {
-    std::vector<float> values(count);
-    std::iota(values.begin(), values.end(), 1.0f);
-    const float total = 0.5f * count * (count + 1);
-    HostWarp::Run(
-        [&] {
-          const float sum = WarpLanes::Accumulate(count, values.data());
-          EXPECT_EQ(sum, total);
-        },
-        3);
-    for (int i = 0; i < count; ++i) {
-      EXPECT_EQ(values[i], 0.5f * (i + 1) * (i + 2));
-    }
-  }
-  HostWarp::Run([] {
-    const int lane = WarpLanes::First();
-    EXPECT_EQ(WarpLanes::Sum(lane), 496);
-    EXPECT_EQ(WarpLanes::Sum(0.5f * lane), 248);
-    // Groups meet on their own, as often as they like.
-    if (WarpLanes::Group() != 2) {
-      const int first = WarpLanes::Group() * WarpLanes::kGroupSize;
-      EXPECT_EQ(WarpLanes::GroupSum(1.0f * lane), 4 * first + 6);
-    }
-  });
-}
-
-TEST(PackedPlane, KeepsNormals) {
-  std::mt19937 random(1);
-  std::normal_distribution<float> normal;
-  double worst = 0;
-  for (int i = 0; i < 100000; ++i) {
-    Vec3 n = {normal(random), normal(random), normal(random)};
-    // Axes and planes between them, too.
-    for (float* c : {&n.x, &n.y, &n.z}) {
-      *c = random() % 8 == 0 ? 0.0f : *c;
-    }
-    const float length = std::sqrt(Dot(n, n));
-    if (length == 0) {
-      continue;
-    }
-    n = (1 / length) * n;
-    const Plane back = Unpack(Pack({2.5f, n}));
-    EXPECT_EQ(back.depth, 2.5f);
-    EXPECT_NEAR(Dot(back.normal, back.normal), 1, 1e-6);
-    const Vec3 difference = back.normal - n;
-    worst = std::max<double>(worst, std::sqrt(Dot(difference, difference)));
-    // What was packed before comes back as the same code.
-    EXPECT_EQ(PackNormal(back.normal), PackNormal(n));
-  }
-  EXPECT_LT(worst, 7e-5);
-  EXPECT_EQ(Dot(UnpackNormal(kNoNormal), UnpackNormal(kNoNormal)), 0);
-}
-
-TEST(Textureness, KeepsOneHalfExactly) {
-  EXPECT_EQ(DecodeTextureness(EncodeTextureness(0.5f)), 0.5f);
-  EXPECT_EQ(DecodeTextureness(EncodeTextureness(1.0f)), 1.0f);
-  for (float t = 0; t <= 1; t += 0.0123f) {
-    EXPECT_NEAR(DecodeTextureness(EncodeTextureness(t)), t, 8e-6);
-  }
-}
 
 // Normals as they come back from the device's memory, so that both backends
 // start with the same.
@@ -153,6 +53,7 @@ struct CudaScene {
     options.window_radius = c.window_radius;
     options.window_step = c.window_step;
     options.seed = 11;
+    options.tapa.enabled = c.guided || c.filter;
     params = MakeSweepParams(options, c.index);
     params.window_radius = static_cast<float>(c.window_radius);
     params.filter = c.filter;
@@ -162,6 +63,7 @@ struct CudaScene {
     std::mt19937 random(6);
     if (c.guided) {
       guide = MakeGuide(scene, &random);
+      options.tapa.weight_range = guide.weight_range;
       for (size_t i = 0; i < guide.textureness.size(); ++i) {
         float& t = guide.textureness.data()[i];
         t = DecodeTextureness(EncodeTextureness(t));
@@ -186,18 +88,50 @@ struct CudaScene {
   SweepGuide guide;
 };
 
-class CudaSweepTest : public testing::TestWithParam<CudaCase> {};
+bool KeepGoing(double) { return true; }
 
-// Shares of the pixels, or of the values, where two states agree.
-struct Agreement {
-  double choices = 0;
-  double costs = 0;
-  double probs = 0;
+// What a backend makes of a scene.
+struct Outcome {
+  std::vector<uint16_t> first_costs;
+  std::vector<uint16_t> costs;
+  Estimate estimate;
 };
 
-double ShareWithin(const std::vector<uint16_t>& actual,
-                   const UninitializedVector<uint16_t>& expected,
+Outcome Run(const CudaScene& s, std::unique_ptr<Backend> backend) {
+  Outcome outcome;
+  if (s.options.tapa.enabled) {
+    backend->SetTextureness(s.guide.textureness);
+    backend->SetPlanes(s.guide.fine, s.guide.coarse);
+  }
+  EXPECT_TRUE(backend->SetEstimate(s.start.depth, s.start.normal, KeepGoing));
+  outcome.first_costs = backend->Costs();
+  EXPECT_TRUE(backend->Sweep(s.params, KeepGoing));
+  outcome.costs = backend->Costs();
+  outcome.estimate = backend->TakeResult();
+  return outcome;
+}
+
+Outcome RunOnCpu(const CudaScene& s) {
+  return Run(s, MakeCpuBackend(s.options, s.problem));
+}
+
+// The kernels that a problem can be swept by.
+enum class Kernel { kUsual, kPrecise, kNaive };
+
+Outcome RunOnGpu(const CudaScene& s, Kernel kernel,
+                 const emulated_cuda::Settings& settings) {
+  Options options = s.options;
+  options.device = 0;
+  options.precise_textures = kernel == Kernel::kPrecise;
+  options.naive_kernel = kernel == Kernel::kNaive;
+  emulated_cuda::Reset(settings);
+  return Run(s, MakeCudaBackend(options, s.problem));
+}
+
+template <class Values>
+double ShareWithin(const Values& actual, const Values& expected,
                    int tolerance) {
+  EXPECT_EQ(actual.size(), expected.size());
   size_t count = 0;
   for (size_t i = 0; i < actual.size(); ++i) {
     count += std::abs(actual[i] - expected[i]) <= tolerance;
@@ -209,40 +143,33 @@ double ShareWithin(const std::vector<uint16_t>& actual,
 constexpr int kCostTolerance = 4;
 constexpr int kProbTolerance = 20;
 
-template <class Kernels>
-Agreement Compare(const Kernels& kernels, const SweepState& expected) {
-  Agreement result;
-  const size_t count = expected.depth.size();
-  for (size_t i = 0; i < count; ++i) {
-    const Plane actual = Unpack(kernels.planes()[i]);
-    const Vec3 difference = actual.normal - expected.normal.data()[i];
+// Share of the pixels where two estimates have the same depth and normal.
+double ShareOfSameChoices(const Estimate& actual, const Estimate& expected) {
+  size_t count = 0;
+  for (size_t i = 0; i < expected.depth.size(); ++i) {
+    const Vec3 difference = actual.normal.data()[i] - expected.normal.data()[i];
     const float depth = expected.depth.data()[i];
-    result.choices += std::abs(actual.depth - depth) <= 1e-4f * depth &&
-                      Dot(difference, difference) < 1e-7f;
+    count += std::abs(actual.depth.data()[i] - depth) <= 1e-4f * depth &&
+             Dot(difference, difference) < 1e-7f;
   }
-  result.choices /= count;
-  result.costs = ShareWithin(kernels.cost(), expected.cost, kCostTolerance);
-  result.probs = ShareWithin(kernels.prob(), expected.prob, kProbTolerance);
-  return result;
+  return static_cast<double>(count) / expected.depth.size();
 }
 
 // After the last sweep.
-template <class Kernels>
-void ExpectSameSupport(const Kernels& kernels, const SweepState& expected,
-                       int n) {
+void ExpectSameSupport(const Estimate& actual, const Estimate& expected) {
   const size_t count = expected.depth.size();
-  const size_t mask_bytes = (n + 7) / 8;
-  int num_same = 0;
-  int num_filtered = 0;
+  const size_t mask_bytes = expected.consistent.size() / count;
+  ASSERT_EQ(actual.consistent.size(), expected.consistent.size());
+  ASSERT_EQ(actual.chosen.size(), count);
+  size_t num_same = 0;
+  size_t num_filtered = 0;
   for (size_t i = 0; i < count; ++i) {
-    const auto* bytes =
-        reinterpret_cast<const uint8_t*>(kernels.cost().data() + i * n);
-    const bool filtered = kernels.planes()[i].normal == kNoNormal;
+    const bool filtered = actual.depth.data()[i] == 0;
     num_filtered += filtered;
-    EXPECT_EQ(filtered, kernels.planes()[i].depth == 0);
-    num_same += std::memcmp(bytes, expected.consistent.data() + i * mask_bytes,
+    num_same += std::memcmp(actual.consistent.data() + i * mask_bytes,
+                            expected.consistent.data() + i * mask_bytes,
                             mask_bytes) == 0 &&
-                bytes[mask_bytes] == expected.chosen.data()[i] &&
+                actual.chosen.data()[i] == expected.chosen.data()[i] &&
                 filtered == (expected.depth.data()[i] == 0);
   }
   EXPECT_GE(num_same, 0.99 * count);
@@ -250,63 +177,44 @@ void ExpectSameSupport(const Kernels& kernels, const SweepState& expected,
   EXPECT_LT(num_filtered, 0.98 * count);
 }
 
-template <class Lanes, class Sizes, bool kPrecise>
-void ExpectAgreesWithCpu(const CudaCase& c, int piece_length, uint32_t order) {
-  const CudaScene s(c);
-  const ProblemData data(s.options, s.problem);
-  SweepScratch scratch(data);
-  SweepState expected(data, c.filter);
-  expected.depth = s.start.depth;
-  expected.normal = s.start.normal;
-  expected.chosen = Map<uint8_t>(data.width, data.height);
-  const auto go_on = [] { return true; };
-  ComputeCosts(data, 0, data.height, go_on, &expected, &scratch);
-
-  HostKernels<Lanes, Sizes, kPrecise> kernels(s.options, s.problem,
-                                              piece_length, order);
-  kernels.SetGuide(s.guide);
-  kernels.SetEstimate(s.start.depth, s.start.normal);
+// exact: whether the emulated textures sample as the CPU does.
+void ExpectAgrees(const CudaCase& c, bool exact, const Outcome& actual,
+                  const Outcome& expected) {
   // Without noise, rounding decides what little texture correlates with.
-  const Agreement first = Compare(kernels, expected);
-  EXPECT_EQ(first.choices, 1);
-  EXPECT_EQ(first.probs, 1);
-  EXPECT_GE(first.costs, kPrecise ? 0.999 : 0.5);
-
-  const auto direction = static_cast<Direction>(c.index % 4);
-  SweepLines(data, s.params, s.guide, direction, 0, NumLines(data, direction),
-             go_on, &expected, &scratch);
-  kernels.Sweep(s.params);
+  EXPECT_GE(
+      ShareWithin(actual.first_costs, expected.first_costs, kCostTolerance),
+      exact ? 0.999 : 0.5);
   if (c.filter) {
-    ExpectSameSupport(kernels, expected, data.num_sources);
+    ExpectSameSupport(actual.estimate, expected.estimate);
     return;
   }
   // A draw or a tie that falls to the other side spreads to the next pixels of
   // the line; with a single view ties are frequent.
-  const double share = data.num_sources == 1 ? 0.995 : 0.999;
-  const Agreement after = Compare(kernels, expected);
-  EXPECT_GE(after.choices, kPrecise ? share : 0.95);
-  EXPECT_GE(after.costs, kPrecise ? share - 0.003 : 0.5);
-  EXPECT_GE(after.probs, kPrecise ? 0.99 : 0.5);
+  const double share = c.num_sources == 1 ? 0.995 : 0.999;
+  EXPECT_GE(ShareOfSameChoices(actual.estimate, expected.estimate),
+            exact ? share : 0.95);
+  EXPECT_GE(ShareWithin(actual.costs, expected.costs, kCostTolerance),
+            exact ? share - 0.003 : 0.5);
+  EXPECT_GE(ShareWithin(actual.estimate.selection_prob,
+                        expected.estimate.selection_prob, kProbTolerance),
+            exact ? 0.99 : 0.5);
 }
 
-TEST_P(CudaSweepTest, WarpAgreesWithCpu) {
+class CudaSweepTest : public testing::TestWithParam<CudaCase> {};
+
+TEST_P(CudaSweepTest, AgreesWithCpu) {
   const CudaCase& c = GetParam();
-  const WindowShape window = [&] {
-    Options options;
-    options.window_radius = c.window_radius;
-    options.window_step = c.window_step;
-    return WindowShape::FromOptions(options);
-  }();
-  if (CommonSizes::Fits(window, c.num_sources)) {
-    ExpectAgreesWithCpu<WarpLanes, CommonSizes, true>(c, 8, 0);
-  } else {
-    ExpectAgreesWithCpu<WarpLanes, AnySizes, true>(c, 100, 9);
+  const CudaScene s(c);
+  const Outcome expected = RunOnCpu(s);
+  emulated_cuda::Settings settings;
+  ExpectAgrees(c, true, RunOnGpu(s, Kernel::kPrecise, settings), expected);
+  ExpectAgrees(c, false, RunOnGpu(s, Kernel::kUsual, settings), expected);
+  settings.exact_filtering = true;
+  settings.turns = 9;
+  ExpectAgrees(c, true, RunOnGpu(s, Kernel::kUsual, settings), expected);
+  if (CommonSizes::Fits(WindowShape::FromOptions(s.options), c.num_sources)) {
+    ExpectAgrees(c, true, RunOnGpu(s, Kernel::kNaive, settings), expected);
   }
-}
-
-TEST_P(CudaSweepTest, SerialKernelAgreesWithCpu) {
-  ExpectAgreesWithCpu<SerialLanes, AnySizes, true>(GetParam(), 5, 0);
-  ExpectAgreesWithCpu<SerialLanes, AnySizes, false>(GetParam(), 64, 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -322,55 +230,48 @@ INSTANTIATE_TEST_SUITE_P(
                     CudaCase{"FilterOneView", false, true, 7, 1, 5, 1, true}),
     [](const auto& info) { return info.param.name; });
 
-// All template instances, and whatever the turns of the lanes and the pieces of
-// the lines are.
-TEST(CudaSweep, InstancesAgreeAndNoSyncIsMissing) {
-  const CudaCase c{"", true, true, 1, 6};
-  const CudaScene s(c);
-  const auto run = [&](auto kernels) {
-    kernels.SetGuide(s.guide);
-    kernels.SetEstimate(s.start.depth, s.start.normal);
-    kernels.Sweep(s.params);
-    return kernels;
-  };
-  const auto same = [](const auto& a, const auto& b) {
-    return a.cost() == b.cost() && a.prob() == b.prob() &&
-           std::memcmp(a.planes().data(), b.planes().data(),
-                       a.planes().size() * sizeof(PackedPlane)) == 0;
-  };
-  const auto common = run(
-      HostKernels<WarpLanes, CommonSizes, true>(s.options, s.problem, 8, 0));
-  const auto other = run(
-      HostKernels<WarpLanes, CommonSizes, true>(s.options, s.problem, 11, 77));
-  const auto any =
-      run(HostKernels<WarpLanes, AnySizes, true>(s.options, s.problem, 40, 5));
-  EXPECT_TRUE(same(common, other));
-  EXPECT_TRUE(same(common, any));
-  const auto filtered = run(
-      HostKernels<WarpLanes, CommonSizes, false>(s.options, s.problem, 8, 3));
-  const auto filtered_any =
-      run(HostKernels<WarpLanes, AnySizes, false>(s.options, s.problem, 9, 4));
-  EXPECT_TRUE(same(filtered, filtered_any));
-  EXPECT_FALSE(same(common, filtered));
+bool IsSame(const Outcome& a, const Outcome& b) {
+  return a.first_costs == b.first_costs && a.costs == b.costs &&
+         a.estimate.selection_prob == b.estimate.selection_prob &&
+         ShareOfSameChoices(a.estimate, b.estimate) == 1;
+}
+
+// Whatever the turns of threads, blocks and streams are.
+TEST(CudaSweep, MissesNoSync) {
+  const CudaScene s(CudaCase{"", true, true, 1, 6});
+  for (const Kernel kernel :
+       {Kernel::kUsual, Kernel::kPrecise, Kernel::kNaive}) {
+    emulated_cuda::Settings settings;
+    const Outcome expected = RunOnGpu(s, kernel, settings);
+    for (const uint32_t turns : {1, 77}) {
+      settings.turns = turns;
+      EXPECT_TRUE(IsSame(RunOnGpu(s, kernel, settings), expected));
+    }
+  }
+}
+
+// The kernel for common sizes computes what that for any sizes does.
+TEST(CudaSweep, KernelsAgree) {
+  const CudaScene s(CudaCase{"", true, true, 1, 6});
+  emulated_cuda::Settings settings;
+  const Outcome precise = RunOnGpu(s, Kernel::kPrecise, settings);
+  const Outcome rounded = RunOnGpu(s, Kernel::kUsual, settings);
+  EXPECT_FALSE(IsSame(precise, rounded));
+  settings.exact_filtering = true;
+  const Outcome usual = RunOnGpu(s, Kernel::kUsual, settings);
+  EXPECT_GE(ShareOfSameChoices(usual.estimate, precise.estimate), 0.999);
 }
 
 // The texture units' rounding moves costs by little.
 TEST(CudaSweep, TextureUnitsChangeCostsByLittle) {
   const CudaScene s(CudaCase{""});
-  HostKernels<SerialLanes, CommonSizes, true> precise(s.options, s.problem);
-  HostKernels<SerialLanes, CommonSizes, false> rounded(s.options, s.problem);
-  precise.SetEstimate(s.start.depth, s.start.normal);
-  rounded.SetEstimate(s.start.depth, s.start.normal);
-  int worst = 0;
-  size_t num_close = 0;
-  for (size_t i = 0; i < precise.cost().size(); ++i) {
-    const int difference = std::abs(precise.cost()[i] - rounded.cost()[i]);
-    worst = std::max(worst, difference);
-    num_close += difference <= 10 * kCostTolerance;
-  }
+  const Outcome precise = RunOnGpu(s, Kernel::kPrecise, {});
+  const Outcome rounded = RunOnGpu(s, Kernel::kUsual, {});
   // 1e-3 but where there is hardly any texture.
-  EXPECT_GE(num_close, 0.99 * precise.cost().size());
-  EXPECT_GT(worst, 0);
+  EXPECT_GE(ShareWithin(rounded.first_costs, precise.first_costs,
+                        10 * kCostTolerance),
+            0.99);
+  EXPECT_FALSE(rounded.first_costs == precise.first_costs);
 }
 
 }  // namespace

@@ -68,6 +68,10 @@ class CpuBackend : public Backend {
   const Map<float>& Depth() override { return state_.depth; }
   const Map<Vec3>& Normal() override { return state_.normal; }
 
+  std::vector<uint16_t> Costs() const override {
+    return {state_.cost.begin(), state_.cost.end()};
+  }
+
   Estimate TakeResult() override {
     return {std::move(state_.depth), std::move(state_.normal),
             std::move(state_.prob), std::move(state_.consistent),

@@ -256,6 +256,12 @@ class CudaBackend : public Backend {
     return normal_;
   }
 
+  std::vector<uint16_t> Costs() const override {
+    std::vector<uint16_t> costs(plan_.pixel_views);
+    cost_.Download(costs.data());
+    return costs;
+  }
+
   Estimate TakeResult() override {
     DownloadEstimate();
     Estimate estimate;

@@ -1,4 +1,4 @@
-#include <algorithm>
+#include <cuda_runtime.h>
 
 #include "src/mvs/cuda/device_textures.h"
 #include "src/mvs/cuda/kernels.h"
@@ -8,6 +8,12 @@
 #include "src/mvs/devices.h"
 
 namespace tapa {
+
+// The memory that a block shares: the cameras, which lanes read at different
+// views at a time, for which constant memory is slow, then the scratch of each
+// warp.
+extern __shared__ __align__(16) float shared_words[];
+
 namespace {
 
 constexpr int kWarpSize = WarpLanes::kSize;
@@ -21,8 +27,6 @@ constexpr int kNaiveBlockThreads = 32;
 // Pixels that a warp initializes one after the other.
 constexpr int kPixelsPerWarp = 32;
 
-// Words of shared memory: the cameras, which lanes read at different views at a
-// time, for which constant memory is slow, then the scratch of each warp.
 template <class Sizes>
 __host__ __device__ int CameraWords(const SweepTask& task) {
   return SourceCameras::kNumCoefficients * Sizes::Stride(task.num_views);
@@ -49,8 +53,6 @@ __device__ __forceinline__ float* WarpScratch(const SweepTask& task,
          threadIdx.x / kWarpSize *
              ScratchWords<WarpLanes, Sizes>(task.window, task.num_views);
 }
-
-extern __shared__ __align__(16) float shared_words[];
 
 template <class Sizes, bool kPrecise>
 __global__ void __launch_bounds__(kBlockThreads, kMinBlocks)
@@ -132,6 +134,25 @@ InitializeKernelPointer InitializeKernelOf(KernelKind kind) {
                                       : InitializeKernel<AnySizes, false>;
 }
 
+// How many threads run a kernel, and where. what: for messages.
+struct Grid {
+  int num_blocks;
+  int block_threads;
+  size_t shared_bytes;
+  cudaStream_t stream;
+  const char* what;
+};
+
+template <typename... Params, typename... Args>
+void Launch(void (*kernel)(Params...), const Grid& grid, const Args&... args) {
+  cudaLaunchConfig_t config = {};
+  config.gridDim = grid.num_blocks;
+  config.blockDim = grid.block_threads;
+  config.dynamicSmemBytes = grid.shared_bytes;
+  config.stream = grid.stream;
+  CheckCuda(cudaLaunchKernelEx(&config, kernel, args...), grid.what);
+}
+
 int NumBlocks(size_t count, size_t per_block) {
   return static_cast<int>((count + per_block - 1) / per_block);
 }
@@ -200,26 +221,27 @@ void LaunchInitialize(const KernelLaunch& launch, const SweepTask& task,
   const InitializeKernelPointer kernel = InitializeKernelOf(kind);
   AllowSharedBytes(reinterpret_cast<const void*>(kernel), any.shared_bytes);
   const size_t pixels_per_block = any.lines_per_block * kPixelsPerWarp;
-  kernel<<<NumBlocks(last - first, pixels_per_block), any.block_threads,
-           any.shared_bytes, stream>>>(task, textures, first, last);
-  CheckCuda(cudaGetLastError(), "computing first costs on the GPU");
+  Launch(kernel,
+         {NumBlocks(last - first, pixels_per_block), any.block_threads,
+          any.shared_bytes, stream, "computing first costs on the GPU"},
+         task, textures, first, last);
 }
 
 void LaunchCheckpoints(const SweepTask& task, int begin, int end,
                        cudaStream_t stream) {
-  CheckpointKernel<<<NumBlocks(end - begin, kWarpsPerBlock), kBlockThreads, 0,
-                     stream>>>(task, begin, end);
-  CheckCuda(cudaGetLastError(), "computing messages on the GPU");
+  Launch(CheckpointKernel,
+         {NumBlocks(end - begin, kWarpsPerBlock), kBlockThreads, 0, stream,
+          "computing messages on the GPU"},
+         task, begin, end);
 }
 
 void LaunchSweepPiece(const KernelLaunch& launch, const SweepTask& task,
                       const TextureObjects& textures, int piece, int begin,
                       int end, cudaStream_t stream) {
-  SweepKernelOf(
-      launch.kind)<<<NumBlocks(end - begin, launch.lines_per_block),
-                     launch.block_threads, launch.shared_bytes, stream>>>(
-      task, textures, piece, begin, end);
-  CheckCuda(cudaGetLastError(), "sweeping on the GPU");
+  Launch(SweepKernelOf(launch.kind),
+         {NumBlocks(end - begin, launch.lines_per_block), launch.block_threads,
+          launch.shared_bytes, stream, "sweeping on the GPU"},
+         task, textures, piece, begin, end);
 }
 
 KernelResources SweepResources(const KernelLaunch& launch) {

@@ -1,7 +1,8 @@
 #ifndef TAPA_SRC_MVS_CUDA_LANES_H_
 #define TAPA_SRC_MVS_CUDA_LANES_H_
 
-#include "src/mvs/cuda/host_warp.h"
+#include <cuda_runtime.h>
+
 #include "src/mvs/host_device.h"
 #include "src/mvs/sweep.h"
 
@@ -12,24 +13,22 @@ namespace tapa {
 // correlations among groups, whose lanes take neighbouring samples, so that
 // their texture reads meet in the same lines of the cache.
 //
-// On the host it runs in a HostWarp.
+// Only for code of a device; on the host it means nothing.
 struct WarpLanes {
   static constexpr int kSize = 32;
 
   static TAPA_INLINE int First() {
-#if defined(__CUDA_ARCH__)
+#if defined(TAPA_ON_DEVICE)
     return threadIdx.x % kSize;
 #else
-    return HostWarp::Lane();
+    return 0;
 #endif
   }
   static constexpr TAPA_INLINE int Step() { return kSize; }
 
   static TAPA_INLINE void Sync() {
-#if defined(__CUDA_ARCH__)
+#if defined(TAPA_ON_DEVICE)
     __syncwarp();
-#else
-    HostWarp::Sync();
 #endif
   }
 
@@ -73,13 +72,13 @@ struct WarpLanes {
   // What lane `source` of the same group gives.
   template <int kGroup>
   static TAPA_INLINE float Shuffle(float value, int source) {
-#if defined(__CUDA_ARCH__)
+#if defined(TAPA_ON_DEVICE)
     // Other groups may be elsewhere.
     constexpr unsigned kLanes = 0xFFFFFFFFu >> (kSize - kGroup);
     const unsigned mask = kLanes << (First() / kGroup * kGroup);
     return __shfl_sync(mask, value, source);
 #else
-    return HostWarp::Shuffle(value, source, kGroup);
+    return source == 0 ? value : 0.0f;
 #endif
   }
 

@@ -1,0 +1,151 @@
+// The CUDA backend on an emulated GPU: what it takes of the device, and what
+// becomes of an estimation when the device fails.
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "src/mvs/devices.h"
+#include "src/mvs/estimate_depth.h"
+#include "tests/mvs/emulated_cuda/emulator.h"
+#include "tests/mvs/synthetic.h"
+
+namespace tapa {
+namespace {
+
+SyntheticPlane SmallScene() {
+  SyntheticOptions options;
+  options.width = 20;
+  options.height = 18;
+  options.focal_length = 24;
+  options.num_sources = 3;
+  return SyntheticPlane(options);
+}
+
+Options GpuOptions(bool geometric, bool tapa) {
+  Options options;
+  options.device = 0;
+  options.geom_consistency = geometric;
+  options.tapa.enabled = tapa;
+  options.num_iterations = 2;
+  options.window_radius = 2;
+  return options;
+}
+
+// Everything is given back, and what was taken is what was announced.
+TEST(CudaBackend, TakesTheMemoryItSays) {
+  const SyntheticPlane scene = SmallScene();
+  for (const bool geometric : {false, true}) {
+    for (const bool tapa : {false, true}) {
+      const Problem problem =
+          geometric ? scene.GeometricProblem() : scene.problem();
+      const Options options = GpuOptions(geometric, tapa);
+      emulated_cuda::Reset({});
+      ASSERT_TRUE(EstimateDepth(options, problem));
+      const emulated_cuda::Usage usage = emulated_cuda::GetUsage();
+      EXPECT_EQ(usage.num_objects, 0);
+      EXPECT_EQ(usage.bytes, 0);
+      const size_t announced = EstimateDepthDeviceMemory(options, problem);
+      // Cameras and planes are not counted.
+      EXPECT_GE(usage.peak_bytes, announced);
+      EXPECT_LE(usage.peak_bytes, announced + 2000);
+    }
+  }
+}
+
+TEST(CudaBackend, SaysWhatMemoryIsShort) {
+  const SyntheticPlane scene = SmallScene();
+  const Options options = GpuOptions(false, false);
+  emulated_cuda::Settings settings;
+  settings.memory_bytes =
+      EstimateDepthDeviceMemory(options, scene.problem()) - 1;
+  emulated_cuda::Reset(settings);
+  try {
+    EstimateDepth(options, scene.problem());
+    FAIL();
+  } catch (const DeviceError& error) {
+    EXPECT_EQ(std::string(error.what()),
+              "it takes 1 MB of GPU memory and 1 MB are free");
+  }
+  EXPECT_EQ(emulated_cuda::GetUsage().peak_bytes, 0);
+}
+
+// Whichever call fails, the error can be caught, it says what was done, nothing
+// stays behind, and the device is as good as before unless it is broken.
+TEST(CudaBackend, SurvivesAnyFailure) {
+  const SyntheticPlane scene = SmallScene();
+  Options options = GpuOptions(false, true);
+  options.num_iterations = 1;
+  emulated_cuda::Reset({});
+  ASSERT_TRUE(EstimateDepth(options, scene.problem()));
+  const int num_calls = emulated_cuda::GetUsage().num_calls;
+  ASSERT_GT(num_calls, 50);
+  for (const bool for_good : {false, true}) {
+    for (int call = 1; call <= num_calls; call += for_good ? 7 : 1) {
+      emulated_cuda::Settings settings;
+      settings.failing_call = call;
+      settings.fails_for_good = for_good;
+      emulated_cuda::Reset(settings);
+      try {
+        EstimateDepth(options, scene.problem());
+        FAIL() << "call " << call << " failed and nobody noticed";
+      } catch (const DeviceError& error) {
+        EXPECT_NE(
+            std::string(error.what()).find(": unspecified launch failure"),
+            std::string::npos)
+            << error.what();
+      }
+      EXPECT_EQ(emulated_cuda::GetUsage().num_objects, 0) << "call " << call;
+      EXPECT_EQ(cudaGetLastError(), cudaSuccess);
+    }
+  }
+}
+
+// Stopped at any time, it stops soon and gives everything back.
+TEST(CudaBackend, StopsSoon) {
+  const SyntheticPlane scene = SmallScene();
+  const Options options = GpuOptions(false, true);
+  emulated_cuda::Settings settings;
+  settings.turns = 3;
+  // Counts how often it asks, and stops it the last time.
+  int num_asked = 0;
+  const auto run = [&](int last) {
+    emulated_cuda::Reset(settings);
+    num_asked = 0;
+    Control control;
+    control.stopped = [&] { return ++num_asked >= last; };
+    return EstimateDepth(options, scene.problem(), control).has_value();
+  };
+  ASSERT_TRUE(run(1000000));
+  const int num_times = num_asked;
+  for (int last = 1; last <= num_times; last += 3) {
+    EXPECT_FALSE(run(last));
+    // Once more where what asked could not stop by itself.
+    EXPECT_LE(num_asked, last + 2);
+    EXPECT_EQ(emulated_cuda::GetUsage().num_objects, 0);
+  }
+}
+
+TEST(CudaDevices, AreListed) {
+  emulated_cuda::Settings settings;
+  settings.num_devices = 2;
+  emulated_cuda::Reset(settings);
+  const DeviceList two = FindDevices();
+  EXPECT_EQ(two.why_none, "");
+  ASSERT_EQ(two.devices.size(), 2);
+  EXPECT_EQ(two.devices[1].name, "Emulated GPU");
+
+  settings.num_devices = 0;
+  emulated_cuda::Reset(settings);
+  EXPECT_EQ(FindDevices().why_none,
+            "there is no NVIDIA GPU that this program may use");
+
+  settings.num_devices = 1;
+  settings.failing_call = 1;
+  settings.failure = cudaErrorInsufficientDriver;
+  emulated_cuda::Reset(settings);
+  EXPECT_EQ(FindDevices().why_none.find("the NVIDIA driver is too old"), 0);
+}
+
+}  // namespace
+}  // namespace tapa
