@@ -14,6 +14,7 @@
 #include "src/colmap/stereo_run.h"
 #include "src/colmap/workers.h"
 #include "src/files/failure.h"
+#include "src/mvs/device_trial.h"
 #include "util/misc.h"
 
 namespace colmap {
@@ -54,7 +55,10 @@ void PatchMatchController::Run() {
   try {
     tapa::CheckOptions(options_);
     const tapa::Workers workers = tapa::ChooseWorkers(
-        options_.use_gpu, options_.gpu_index, tapa::FindDevices());
+        options_.use_gpu, options_.gpu_index, tapa::FindDevices(),
+        [&](int device) {
+          return tapa::TryDevice(device, tapa::EngineOptions(options_));
+        });
     if (!workers.message.empty()) {
       std::cout << workers.message << std::endl;
     }

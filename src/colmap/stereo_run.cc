@@ -18,6 +18,7 @@
 #include "src/colmap/engine_options.h"
 #include "src/colmap/map_files.h"
 #include "src/colmap/tapa_debug.h"
+#include "src/colmap/workers.h"
 #include "src/files/failure.h"
 #include "src/mvs/devices.h"
 #include "src/mvs/estimate_depth.h"
@@ -513,10 +514,43 @@ bool StereoRun::ReadInput(const ViewIndices& problem, bool geometric,
   return true;
 }
 
+bool StereoRun::IsLost(int device) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return lost_devices_.count(device) > 0;
+}
+
 // Returns false if stopped.
 bool StereoRun::ComputeView(const ViewIndices& problem, Pass pass, int device,
                             int progress_view,
                             const std::function<bool()>& stopped) {
+  if (device == kCpu) {
+    return ComputeViewOn(kCpu, problem, pass, progress_view, stopped);
+  }
+  const std::string& name = views_[problem.reference].name;
+  const std::string gpu = "GPU " + std::to_string(device);
+  if (!IsLost(device)) {
+    try {
+      return ComputeViewOn(device, problem, pass, progress_view, stopped);
+    } catch (const DeviceMemoryError& error) {
+      progress_->ClearLine();
+      PrintWarning("View " + name + " cannot be computed on " + gpu + " (" +
+                   error.what() + "): the CPU is used for it");
+    } catch (const DeviceError& error) {
+      progress_->ClearLine();
+      PrintWarning(gpu + " failed at view " + name + " (" + error.what() +
+                   "): from now on the CPU is used in its place");
+      const std::lock_guard<std::mutex> lock(mutex_);
+      lost_devices_.insert(device);
+    }
+  }
+  const std::lock_guard<std::mutex> turn(cpu_mutex_);
+  return ComputeViewOn(kCpu, problem, pass, progress_view, stopped);
+}
+
+// Returns false if stopped.
+bool StereoRun::ComputeViewOn(int device, const ViewIndices& problem, Pass pass,
+                              int progress_view,
+                              const std::function<bool()>& stopped) {
   const bool geometric = pass == Pass::kGeometric;
   const SceneView& reference = views_[problem.reference];
   Options options = EngineOptions(PassOptions(pass));
@@ -541,12 +575,6 @@ bool StereoRun::ComputeView(const ViewIndices& problem, Pass pass, int device,
   std::optional<Estimate> estimate;
   try {
     estimate = EstimateDepth(options, std::move(input.problem), control);
-  } catch (const DeviceError& error) {
-    progress_->ClearLine();
-    PrintWarning("View " + reference.name + " cannot be computed on GPU " +
-                 std::to_string(device) + " (" + error.what() +
-                 "): the CPU is used for it");
-    return ComputeView(problem, pass, -1, progress_view, stopped);
   } catch (const std::invalid_argument& error) {
     throw Failure("View " + reference.name +
                   " cannot be computed: " + error.what());

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -25,7 +26,7 @@ namespace tapa {
 // that was stopped goes on where it was, and ends with the same files.
 class StereoRun {
  public:
-  // workers: for each the GPU that it computes on, or -1: the CPU.
+  // workers: for each the GPU that it computes on, or kCpu.
   StereoRun(const colmap::mvs::PatchMatchOptions& options,
             const WorkspaceLocation& location, std::vector<int> workers);
 
@@ -70,6 +71,9 @@ class StereoRun {
                            const std::function<bool()>& stopped);
   bool ComputeView(const ViewIndices& problem, Pass pass, int device,
                    int progress_view, const std::function<bool()>& stopped);
+  bool ComputeViewOn(int device, const ViewIndices& problem, Pass pass,
+                     int progress_view, const std::function<bool()>& stopped);
+  bool IsLost(int device);
   struct Input;
   bool ReadInput(const ViewIndices& problem, bool geometric, bool color,
                  const std::function<bool()>& stopped, Input* input);
@@ -84,6 +88,10 @@ class StereoRun {
   // Held while files are read or pictures written, and while workers share out
   // views.
   std::mutex mutex_;
+  // Held while the CPU, with all of its threads, computes in place of a GPU.
+  std::mutex cpu_mutex_;
+  // GPUs that do not work any more.
+  std::set<int> lost_devices_;
   std::vector<SceneView> views_;
   std::vector<ViewIndices> problems_;
   std::unique_ptr<ViewCache<uint8_t>> photos_;

@@ -1,17 +1,12 @@
 #include "src/colmap/workers.h"
 
+#include <set>
 #include <sstream>
 
 #include "src/files/failure.h"
 
 namespace tapa {
 namespace {
-
-constexpr int kCpu = -1;
-
-// Whether the GPU backend has computed on a GPU and was as good as the CPU. As
-// long as it has not, it is for those who ask for a GPU by its number.
-constexpr bool kTriedOnGpu = false;
 
 std::vector<int> ParseList(const std::string& text) {
   std::vector<int> numbers;
@@ -36,53 +31,83 @@ void CheckIndex(int index, const DeviceList& list) {
                        ? "is only GPU 0"
                        : "are only GPUs 0 to " + std::to_string(count - 1)));
   }
-  const DeviceList::Device& device = list.devices[index];
-  if (!device.unusable.empty()) {
-    throw Failure("PatchMatchStereo.gpu_index names GPU " +
-                  std::to_string(index) + " (" + device.name +
-                  "), which cannot be used: " + device.unusable);
+}
+
+std::string Describe(int index, const DeviceList& list) {
+  return "GPU " + std::to_string(index) + " (" + list.devices[index].name + ")";
+}
+
+// The GPUs of the list, in its order, and their names.
+std::string Names(const std::vector<int>& indices, const DeviceList& list) {
+  std::string names;
+  for (const int index : indices) {
+    names += (names.empty() ? "" : ", ") + Describe(index, list);
   }
+  return names;
+}
+
+Workers CpuInstead(const std::string& why) {
+  return {{kCpu},
+          "There is no GPU to compute on (" + why + "): the CPU is used."};
+}
+
+Workers AllGpus(const DeviceList& list,
+                const std::function<std::string(int)>& what_is_wrong) {
+  Workers workers;
+  std::string wrong;
+  for (int i = 0; i < static_cast<int>(list.devices.size()); ++i) {
+    const std::string why = what_is_wrong(i);
+    if (why.empty()) {
+      workers.devices.push_back(i);
+    } else {
+      wrong += (wrong.empty() ? "" : "; ") + Describe(i, list) +
+               " cannot be used: " + why;
+    }
+  }
+  if (workers.devices.empty()) {
+    return CpuInstead(wrong);
+  }
+  workers.message = "Computing on " + Names(workers.devices, list) + ".";
+  if (!wrong.empty()) {
+    workers.message += " " + wrong + ".";
+  }
+  return workers;
+}
+
+Workers NamedGpus(const std::vector<int>& indices, const DeviceList& list,
+                  const std::function<std::string(int)>& what_is_wrong) {
+  for (const int index : indices) {
+    CheckIndex(index, list);
+  }
+  for (const int index : std::set<int>(indices.begin(), indices.end())) {
+    const std::string why = what_is_wrong(index);
+    if (!why.empty()) {
+      throw Failure("PatchMatchStereo.gpu_index names " +
+                    Describe(index, list) + ", which cannot be used: " + why +
+                    "; PatchMatchStereo.use_gpu 0 computes on the CPU");
+    }
+  }
+  return {indices, "Computing on " + Names(indices, list) + "."};
 }
 
 }  // namespace
 
 Workers ChooseWorkers(bool use_gpu, const std::string& gpu_index,
-                      const DeviceList& list) {
-  Workers workers;
+                      const DeviceList& list,
+                      const std::function<std::string(int)>& try_device) {
   if (!use_gpu) {
-    workers.devices = {kCpu};
-    return workers;
+    return {{kCpu}, ""};
   }
-  if (!list.why_none.empty()) {
-    workers.devices = {kCpu};
-    workers.message = "There is no GPU to compute on (" + list.why_none +
-                      "): the CPU is used.";
-    return workers;
+  if (list.devices.empty()) {
+    return CpuInstead(list.why_none);
   }
-  if (gpu_index == "-1" && !kTriedOnGpu) {
-    workers.devices = {kCpu};
-    workers.message =
-        "The CPU is used: computing on GPUs has not been tried on one yet. "
-        "PatchMatchStereo.gpu_index 0 does it all the same.";
-    return workers;
-  }
-  if (gpu_index == "-1") {
-    for (size_t i = 0; i < list.devices.size(); ++i) {
-      if (list.devices[i].unusable.empty()) {
-        workers.devices.push_back(static_cast<int>(i));
-      }
-    }
-  } else {
-    workers.devices = ParseList(gpu_index);
-  }
-  for (const int index : workers.devices) {
-    CheckIndex(index, list);
-    workers.message += (workers.message.empty() ? "Computing on GPU " : ", ") +
-                       std::to_string(index) + " (" + list.devices[index].name +
-                       ")";
-  }
-  workers.message += ".";
-  return workers;
+  const auto what_is_wrong = [&](int index) {
+    const std::string& unusable = list.devices[index].unusable;
+    return unusable.empty() ? try_device(index) : unusable;
+  };
+  return gpu_index == "-1"
+             ? AllGpus(list, what_is_wrong)
+             : NamedGpus(ParseList(gpu_index), list, what_is_wrong);
 }
 
 }  // namespace tapa

@@ -1,6 +1,7 @@
 #ifndef TAPA_SRC_COLMAP_WORKERS_H_
 #define TAPA_SRC_COLMAP_WORKERS_H_
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -8,21 +9,24 @@
 
 namespace tapa {
 
+constexpr int kCpu = -1;
+
 // Who computes the views of a run.
 struct Workers {
   // One worker, which computes one view at a time, for each: the number of its
-  // GPU, or -1: the CPU with all of its threads.
+  // GPU, or kCpu: the CPU with all of its threads.
   std::vector<int> devices;
   // What the user should know about the choice; empty: nothing.
   std::string message;
 };
 
 // gpu_index: "-1", all GPUs, or numbers separated by commas; a GPU that is
-// named twice has two workers. Without any GPU that can be used the CPU is; so
-// it is for "-1" as long as the GPU backend has never run on a GPU. Throws
-// Failure if the list is none, or names a GPU that is not there.
+// named twice has two workers. Without any GPU that can be used the CPU is.
+// try_device: says what is wrong with a GPU, or nothing (device_trial.h).
+// Throws Failure if the list is none, or names a GPU that cannot be used.
 Workers ChooseWorkers(bool use_gpu, const std::string& gpu_index,
-                      const DeviceList& list);
+                      const DeviceList& list,
+                      const std::function<std::string(int)>& try_device);
 
 }  // namespace tapa
 

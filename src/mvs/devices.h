@@ -28,11 +28,17 @@ struct DeviceList {
 // Never fails: without CUDA in the program, a driver or a device it says so.
 DeviceList FindDevices();
 
-// A GPU has too little memory for a problem, or does not work. The same problem
+// A GPU does not work, or has too little memory for a problem. The same problem
 // can be computed on the CPU.
 class DeviceError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
+};
+
+// Too little memory; the GPU can compute other problems.
+class DeviceMemoryError : public DeviceError {
+ public:
+  using DeviceError::DeviceError;
 };
 
 // Where the time on a GPU goes, for benchmarks.

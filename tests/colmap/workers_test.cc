@@ -13,42 +13,69 @@ DeviceList TwoGpus() {
   return list;
 }
 
+std::string NothingIsWrong(int) { return ""; }
+
+Workers Choose(const std::string& gpu_index) {
+  return ChooseWorkers(true, gpu_index, TwoGpus(), NothingIsWrong);
+}
+
 TEST(Workers, AreTheGpusOfTheList) {
-  const auto devices = [](const char* gpu_index) {
-    return ChooseWorkers(true, gpu_index, TwoGpus()).devices;
-  };
-  // Not yet all of them: nobody has tried one.
-  EXPECT_EQ(devices("-1"), (std::vector<int>{-1}));
-  EXPECT_EQ(devices("2"), (std::vector<int>{2}));
-  EXPECT_EQ(devices("2, 0"), (std::vector<int>{2, 0}));
-  EXPECT_EQ(devices("0,0"), (std::vector<int>{0, 0}));
-  EXPECT_EQ(ChooseWorkers(true, "0,0", TwoGpus()).message,
-            "Computing on GPU 0 (Fast), 0 (Fast).");
+  EXPECT_EQ(Choose("-1").devices, (std::vector<int>{0, 2}));
+  EXPECT_EQ(Choose("-1").message,
+            "Computing on GPU 0 (Fast), GPU 2 (Slow). GPU 1 (Old) cannot be "
+            "used: it is too old.");
+  EXPECT_EQ(Choose("2").devices, (std::vector<int>{2}));
+  EXPECT_EQ(Choose("2, 0").devices, (std::vector<int>{2, 0}));
+  EXPECT_EQ(Choose("0,0").devices, (std::vector<int>{0, 0}));
+  EXPECT_EQ(Choose("0,0").message, "Computing on GPU 0 (Fast), GPU 0 (Fast).");
 }
 
 TEST(Workers, AreTheCpuWhereThereIsNoGpuOrNoneIsWanted) {
   DeviceList none;
   none.why_none = "there is no driver";
-  const Workers workers = ChooseWorkers(true, "3", none);
-  EXPECT_EQ(workers.devices, (std::vector<int>{-1}));
+  const Workers workers = ChooseWorkers(true, "3", none, NothingIsWrong);
+  EXPECT_EQ(workers.devices, (std::vector<int>{kCpu}));
   EXPECT_NE(workers.message.find("there is no driver"), std::string::npos);
   EXPECT_NE(workers.message.find("the CPU is used"), std::string::npos);
 
-  const Workers unwanted = ChooseWorkers(false, "0", TwoGpus());
-  EXPECT_EQ(unwanted.devices, (std::vector<int>{-1}));
+  const Workers unwanted = ChooseWorkers(false, "0", TwoGpus(), NothingIsWrong);
+  EXPECT_EQ(unwanted.devices, (std::vector<int>{kCpu}));
   EXPECT_EQ(unwanted.message, "");
+}
+
+TEST(Workers, AreThoseThatComputeWhatTheyShould) {
+  std::vector<int> tried;
+  const auto try_device = [&](int device) -> std::string {
+    tried.push_back(device);
+    return device == 0 ? "it is broken" : "";
+  };
+  EXPECT_EQ(ChooseWorkers(true, "-1", TwoGpus(), try_device).devices,
+            (std::vector<int>{2}));
+  EXPECT_EQ(tried, (std::vector<int>{0, 2}));
+  // Once each, and only those that are asked for.
+  tried.clear();
+  ChooseWorkers(true, "2,2", TwoGpus(), try_device);
+  EXPECT_EQ(tried, (std::vector<int>{2}));
+  EXPECT_THROW(ChooseWorkers(true, "2,0", TwoGpus(), try_device), Failure);
+
+  const auto all_broken = [](int) { return std::string("it is broken"); };
+  const Workers none = ChooseWorkers(true, "-1", TwoGpus(), all_broken);
+  EXPECT_EQ(none.devices, (std::vector<int>{kCpu}));
+  EXPECT_NE(none.message.find("GPU 0 (Fast) cannot be used: it is broken"),
+            std::string::npos);
 }
 
 TEST(Workers, NameWhatIsWrongWithTheList) {
   const auto error = [](const char* gpu_index) -> std::string {
     try {
-      ChooseWorkers(true, gpu_index, TwoGpus());
+      Choose(gpu_index);
     } catch (const Failure& failure) {
       return failure.what();
     }
     return "";
   };
   EXPECT_NE(error("3").find("only GPUs 0 to 2"), std::string::npos);
+  EXPECT_NE(error("-2").find("only GPUs 0 to 2"), std::string::npos);
   EXPECT_NE(error("0,1").find("it is too old"), std::string::npos);
   EXPECT_NE(error("x").find("gpu_index"), std::string::npos);
 }

@@ -195,6 +195,18 @@ def read_map(path):
     return width, height, values
 
 
+def depth_errors(workspace, name, index, **where):
+    """|depth / true depth - 1| of the pixels of view number `index` that have a
+    depth, and the number of all pixels."""
+    width, _, depths = read_map(map_path(workspace, name, **where))
+    errors = []
+    for i, depth in enumerate(depths):
+        if depth > 0:
+            x = (i % width - width / 2) / (FOCAL * width / WIDTH)
+            errors.append(abs(depth / depth_at(x, index * BASELINE) - 1))
+    return errors, len(depths)
+
+
 def snapshot(workspace, stereo="stereo"):
     """Content of all files with maps, by relative path."""
     files = {}
@@ -235,6 +247,12 @@ class TestCase(unittest.TestCase):
 
     def path(self, *parts):
         return os.path.join(self.folder, *parts)
+
+    def assert_same_files(self, expected, actual):
+        """Of two snapshots; names those that differ."""
+        self.assertEqual(sorted(expected), sorted(actual))
+        self.assertEqual([], [name for name in expected
+                              if expected[name] != actual[name]])
 
     def assert_success(self, result):
         self.assertEqual(result.returncode, 0, result.stdout)

@@ -10,15 +10,8 @@ import tiny_workspace as tiny
 
 def median_depth_error(workspace, name, index, **where):
     """Median of |depth / true depth - 1| and the share of pixels with depth."""
-    width, height, depths = tiny.read_map(
-        tiny.map_path(workspace, name, **where))
-    errors = []
-    for i, depth in enumerate(depths):
-        if depth > 0:
-            x = (i % width - width / 2) / (tiny.FOCAL * width / tiny.WIDTH)
-            truth = tiny.depth_at(x, index * tiny.BASELINE)
-            errors.append(abs(depth / truth - 1))
-    return sorted(errors)[len(errors) // 2], len(errors) / len(depths)
+    errors, num_pixels = tiny.depth_errors(workspace, name, index, **where)
+    return sorted(errors)[len(errors) // 2], len(errors) / num_pixels
 
 
 # What is good enough for a small scene.

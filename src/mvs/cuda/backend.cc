@@ -11,6 +11,7 @@
 #include "src/mvs/cuda/kernels.h"
 #include "src/mvs/cuda/memory.h"
 #include "src/mvs/cuda/memory_plan.h"
+#include "src/mvs/cuda/memory_share.h"
 #include "src/mvs/devices.h"
 
 namespace tapa {
@@ -23,19 +24,6 @@ constexpr int kNumStreams = 4;
 constexpr int kQueueLength = 4;
 // Rows of a launch that computes first costs.
 constexpr int kRowsPerLaunch = 32;
-
-size_t UseDevice(int device) {
-  CheckCuda(cudaSetDevice(device), "choosing the GPU");
-  size_t free_bytes = 0;
-  size_t total_bytes = 0;
-  CheckCuda(cudaMemGetInfo(&free_bytes, &total_bytes),
-            "asking for the GPU's memory");
-  return free_bytes;
-}
-
-std::string Megabytes(size_t bytes) {
-  return std::to_string((bytes + (1 << 20) - 1) >> 20) + " MB";
-}
 
 // The images of a problem as textures.
 class ProblemTextures {
@@ -150,7 +138,7 @@ class CudaBackend : public Backend {
               DeviceProfile* profile)
       : profile_(profile),
         plan_(options, problem),
-        free_bytes_(FreeBytesFor(options, plan_)),
+        share_(options.device, plan_.Bytes()),
         textures_(problem, plan_),
         planes_(plan_.pixels),
         cost_(plan_.pixel_views),
@@ -167,6 +155,7 @@ class CudaBackend : public Backend {
       fine_ = DevicePlanes(plan_.pixels);
       coarse_ = DevicePlanes(plan_.pixels);
     }
+    share_.Settle();
     UploadCameras(problem);
     if (profile_ != nullptr) {
       DescribeDevice(options.device, profile_);
@@ -276,17 +265,6 @@ class CudaBackend : public Backend {
   }
 
  private:
-  // Looks before anything is allocated, so that what is short is named.
-  static size_t FreeBytesFor(const Options& options, const MemoryPlan& plan) {
-    const size_t free_bytes = UseDevice(options.device);
-    if (plan.Bytes() > free_bytes) {
-      throw DeviceError("it takes " + Megabytes(plan.Bytes()) +
-                        " of GPU memory and " + Megabytes(free_bytes) +
-                        " are free");
-    }
-    return free_bytes;
-  }
-
   SweepTask MakeTask(const Options& options, const Problem& problem) const {
     SweepTask task;
     task.width = plan_.width;
@@ -392,8 +370,8 @@ class CudaBackend : public Backend {
 
   DeviceProfile* const profile_;
   const MemoryPlan plan_;
-  // By then the device is chosen for all that follows.
-  const size_t free_bytes_;
+  // Chooses the device for all that follows.
+  MemoryShare share_;
   ProblemTextures textures_;
   DeviceArray<PackedPlane> planes_;
   DeviceArray<uint16_t> cost_;
@@ -408,6 +386,7 @@ class CudaBackend : public Backend {
   DevicePlanes coarse_;
   SweepTask task_;
   KernelLaunch launch_;
+  // Behind all that their work uses.
   Stream streams_[kNumStreams];
   Event events_[kQueueLength][kNumStreams];
   // Whether the last sweep had the filter on.

@@ -53,7 +53,6 @@ DeviceList FindDevices() {
   int count = 0;
   const cudaError_t status = cudaGetDeviceCount(&count);
   if (status != cudaSuccess) {
-    cudaGetLastError();
     list.why_none = DescribeError(status);
     return list;
   }

@@ -179,10 +179,12 @@ int MaxSharedBytes() {
   return bytes;
 }
 
-void AllowSharedBytes(const void* kernel, size_t bytes) {
+// As much as there is, whatever the problem: the limit is one for all threads
+// of the program, and others may be between two launches that need more.
+void AllowSharedBytes(const void* kernel) {
   CheckCuda(
       cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize,
-                           static_cast<int>(bytes)),
+                           MaxSharedBytes()),
       "setting a kernel's shared memory");
 }
 
@@ -205,8 +207,7 @@ KernelLaunch::KernelLaunch(const SweepTask& task, KernelKind kind)
   }
   block_threads = naive ? kNaiveBlockThreads : num_warps * kWarpSize;
   lines_per_block = naive ? kNaiveBlockThreads : num_warps;
-  AllowSharedBytes(reinterpret_cast<const void*>(SweepKernelOf(kind)),
-                   shared_bytes);
+  AllowSharedBytes(reinterpret_cast<const void*>(SweepKernelOf(kind)));
 }
 
 void LaunchInitialize(const KernelLaunch& launch, const SweepTask& task,
@@ -219,7 +220,7 @@ void LaunchInitialize(const KernelLaunch& launch, const SweepTask& task,
                               : KernelKind::kAny;
   const KernelLaunch any(task, kind);
   const InitializeKernelPointer kernel = InitializeKernelOf(kind);
-  AllowSharedBytes(reinterpret_cast<const void*>(kernel), any.shared_bytes);
+  AllowSharedBytes(reinterpret_cast<const void*>(kernel));
   const size_t pixels_per_block = any.lines_per_block * kPixelsPerWarp;
   Launch(kernel,
          {NumBlocks(last - first, pixels_per_block), any.block_threads,

@@ -13,9 +13,12 @@ namespace tapa {
 
 void CheckCuda(cudaError_t status, const char* what) {
   if (status != cudaSuccess) {
-    // Errors that are not sticky must not meet the next call.
-    cudaGetLastError();
-    throw DeviceError(std::string(what) + ": " + cudaGetErrorString(status));
+    const std::string message =
+        std::string(what) + ": " + cudaGetErrorString(status);
+    if (status == cudaErrorMemoryAllocation) {
+      throw DeviceMemoryError(message);
+    }
+    throw DeviceError(message);
   }
 }
 
@@ -121,7 +124,12 @@ Stream::Stream() {
             "making a stream");
 }
 
-Stream::~Stream() { cudaStreamDestroy(stream_); }
+Stream::~Stream() {
+  if (stream_ != nullptr) {
+    cudaStreamSynchronize(stream_);
+    cudaStreamDestroy(stream_);
+  }
+}
 
 void Stream::Wait() const {
   CheckCuda(cudaStreamSynchronize(stream_), "computing on the GPU");

@@ -14,7 +14,8 @@ namespace tapa {
 // Owners of what CUDA hands out. All are used by the thread that made them,
 // with its current device.
 
-// Throws DeviceError that says what was done, if status is no success.
+// Throws DeviceError or, if that is what it is, DeviceMemoryError that says
+// what was done, if status is no success.
 void CheckCuda(cudaError_t status, const char* what);
 
 // Copies from memory that the system may move go on for a moment after the call
@@ -112,6 +113,8 @@ class Texture {
 class Stream {
  public:
   Stream();
+  // Waits: after an error there may be work left, which uses what is given back
+  // next.
   ~Stream();
   Stream(const Stream&) = delete;
   Stream& operator=(const Stream&) = delete;

@@ -20,7 +20,6 @@ enum cudaError_t {
   cudaErrorLaunchFailure,
 };
 const char* cudaGetErrorString(cudaError_t error);
-cudaError_t cudaGetLastError();
 
 // Devices.
 

@@ -1,11 +1,7 @@
-#include <cstring>
-
 #include "tests/mvs/emulated_cuda/state.h"
 #include "tests/mvs/emulated_cuda/threads.h"
 
 using emulated_cuda::Call;
-using emulated_cuda::CallToGiveBack;
-using emulated_cuda::GetState;
 using emulated_cuda::State;
 
 namespace {
@@ -40,12 +36,6 @@ const char* cudaGetErrorString(cudaError_t error) {
       return "unspecified launch failure";
   }
   return "unrecognized error code";
-}
-
-cudaError_t cudaGetLastError() {
-  cudaError_t last = cudaSuccess;
-  CallToGiveBack([&](State* state) { std::swap(last, state->last_error); });
-  return last;
 }
 
 cudaError_t cudaGetDeviceCount(int* count) {

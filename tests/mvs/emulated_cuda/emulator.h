@@ -48,7 +48,7 @@ struct Usage {
 };
 
 // Starts anew; whatever is still held must not be used any more. A program
-// starts with settings from the environment: EMULATED_GPU_MEMORY_MB,
+// starts with settings from the environment: EMULATED_GPU_MEMORY_KB,
 // EMULATED_GPU_FAILING_CALL, EMULATED_GPU_BLACK_TEXTURES.
 void Reset(const Settings& settings);
 Usage GetUsage();

@@ -16,8 +16,8 @@ size_t FromEnvironment(const char* name, size_t otherwise) {
 Settings SettingsOfEnvironment() {
   Settings settings;
   settings.memory_bytes =
-      FromEnvironment("EMULATED_GPU_MEMORY_MB", settings.memory_bytes >> 20)
-      << 20;
+      FromEnvironment("EMULATED_GPU_MEMORY_KB", settings.memory_bytes >> 10)
+      << 10;
   settings.failing_call =
       static_cast<int>(FromEnvironment("EMULATED_GPU_FAILING_CALL", 0));
   settings.fails_for_good = true;
@@ -42,7 +42,6 @@ void Reset(const Settings& settings) {
   const std::lock_guard<std::recursive_mutex> lock(state.mutex);
   state.settings = settings;
   state.usage = Usage();
-  state.last_error = cudaSuccess;
   state.random.seed(settings.turns);
   state.max_shared_bytes.clear();
 }

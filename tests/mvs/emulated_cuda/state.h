@@ -52,7 +52,6 @@ struct State {
   std::recursive_mutex mutex;
   Settings settings;
   Usage usage;
-  cudaError_t last_error = cudaSuccess;
   std::mt19937 random;
   // Bytes of every piece of device memory.
   std::map<void*, size_t> memory;
@@ -94,15 +93,11 @@ cudaError_t Call(const Run& run) {
   State& state = GetState();
   const std::lock_guard<std::recursive_mutex> lock(state.mutex);
   ++state.usage.num_calls;
-  cudaError_t result = state.settings.failure;
-  if (!state.CallFails()) {
-    state.RunSomeWork();
-    result = run(&state);
+  if (state.CallFails()) {
+    return state.settings.failure;
   }
-  if (result != cudaSuccess) {
-    state.last_error = result;
-  }
-  return result;
+  state.RunSomeWork();
+  return run(&state);
 }
 
 // The same for functions that give something back.

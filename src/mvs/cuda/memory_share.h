@@ -1,0 +1,29 @@
+#ifndef TAPA_SRC_MVS_CUDA_MEMORY_SHARE_H_
+#define TAPA_SRC_MVS_CUDA_MEMORY_SHARE_H_
+
+#include <cstddef>
+
+namespace tapa {
+
+// What a backend takes of a GPU's memory. Backends of several threads take it
+// one after the other, so that nobody takes what another has found free.
+class MemoryShare {
+ public:
+  // Chooses the GPU for this thread. Waits until the memory is free, as long as
+  // there are other shares that may end; then throws DeviceMemoryError.
+  MemoryShare(int device, size_t bytes);
+  ~MemoryShare();
+  MemoryShare(const MemoryShare&) = delete;
+  MemoryShare& operator=(const MemoryShare&) = delete;
+
+  // To be called once everything is allocated; others wait for it.
+  void Settle();
+
+ private:
+  const int device_;
+  bool is_settled_ = false;
+};
+
+}  // namespace tapa
+
+#endif  // TAPA_SRC_MVS_CUDA_MEMORY_SHARE_H_

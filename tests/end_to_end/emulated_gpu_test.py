@@ -1,0 +1,85 @@
+"""Dense stereo on an emulated GPU, which works or does not.
+"""
+
+import os
+import re
+import unittest
+
+import tiny_workspace as tiny
+
+
+class EmulatedGpu(tiny.TestCase):
+
+    def stereo(self, name, gpu_index, **environment):
+        """A run in a workspace of its own."""
+        folder = self.path(name)
+        self.names = tiny.make_workspace(folder, num_views=3)
+        result = tiny.run(
+            [os.environ["EMULATED_GPU_STEREO"], folder, gpu_index],
+            env=dict(os.environ, **environment))
+        return result, folder
+
+    def maps(self, name, gpu_index, **environment):
+        """Files and output of a run that succeeds."""
+        result, folder = self.stereo(name, gpu_index, **environment)
+        self.assert_success(result)
+        return tiny.snapshot(folder), result.stdout
+
+    def test_maps_are_as_good_as_those_of_the_cpu(self):
+        _, cpu = self.stereo("cpu", "none")
+        result, gpu = self.stereo("gpu", "-1")
+        self.assert_success(result)
+        self.assertIn("Computing on GPU 0 (Emulated GPU).", result.stdout)
+        for index, name in enumerate(self.names):
+            right = []
+            for folder in cpu, gpu:
+                errors, count = tiny.depth_errors(folder, name, index)
+                right.append(sum(error < 0.01 for error in errors) / count)
+            self.assertGreater(right[0], 0.3)
+            self.assertGreater(right[1], right[0] - 0.03)
+
+    def test_maps_do_not_depend_on_the_number_of_workers(self):
+        expected, _ = self.maps("one", "0")
+        actual, output = self.maps("two", "0,0")
+        self.assert_same_files(expected, actual)
+        for name in self.names:
+            self.assertEqual(output.count(" %s: " % name), 2, output)
+
+    def test_views_that_need_more_memory_are_left_to_the_cpu(self):
+        expected, _ = self.maps("cpu", "none")
+        actual, output = self.maps("little", "-1", EMULATED_GPU_MEMORY_KB="68")
+        self.assert_same_files(expected, actual)
+        for name in self.names:
+            self.assertRegex(
+                output, "View %s cannot be computed on GPU 0 "
+                r"\(it takes 1 MB of GPU memory .*\): the CPU is used for it" %
+                name)
+
+    def test_a_gpu_that_fails_leaves_the_rest_to_the_cpu(self):
+        _, output = self.maps("sound", "0")
+        calls = int(re.search(r"^Calls: (\d+)$", output, re.M)[1])
+        for workers in "0", "0,0":
+            _, output = self.maps("failing " + workers, workers,
+                                  EMULATED_GPU_FAILING_CALL=str(calls // 2))
+            self.assertIn("failed at view", output)
+            self.assertIn("unspecified launch failure", output)
+            self.assertIn("from now on the CPU is used in its place", output)
+            # One line for each worker that was at work.
+            self.assertLessEqual(output.count("failed at view"),
+                                 len(workers.split(",")))
+
+    def test_a_gpu_that_computes_wrongly_is_not_used(self):
+        expected, _ = self.maps("cpu", "none")
+        actual, output = self.maps("wrong", "-1",
+                                   EMULATED_GPU_BLACK_TEXTURES="1")
+        self.assert_same_files(expected, actual)
+        self.assertIn("GPU 0 (Emulated GPU) cannot be used: it computes "
+                      "wrongly", output)
+        self.assertIn("the CPU is used", output)
+
+        result, _ = self.stereo("named", "0", EMULATED_GPU_BLACK_TEXTURES="1")
+        self.assert_one_error(result, "gpu_index names GPU 0", "use_gpu 0")
+
+
+if __name__ == "__main__":
+    unittest.main()
