@@ -5,7 +5,7 @@ import os
 import re
 import shutil
 
-from . import (cloud_scores, depth_maps, depth_scans, depth_scores, files, links,
+from . import (cloud_scores, depth_maps, depth_scans, depth_scores, links,
                processes, run_record, stereo_run)
 from .methods import METHODS
 from .processes import Failure
@@ -191,7 +191,7 @@ class Scorer:
 
 def _beam_options(folder):
     """Beams as wide as the pixels that scans were made from."""
-    about = files.read_json(os.path.join(folder, "scans.json"))
+    about = depth_scans.read_about(folder)
     return ["--beam_divergence_halfangle_deg",
             f"{about['beam_divergence_halfangle_deg']:.6g}"
             if about else "(as scans.json says)"]
@@ -249,7 +249,10 @@ def take_comparison(benchmark, folder, name, paths):
     paths = [os.path.abspath(path) for path in paths]
     photographs = links.photographs(benchmark.data, benchmark.every)
     record = run_record.load(folder)
-    if record is not None and record.get("compare") != paths:
+    if record is not None and "compare" not in record:
+        raise Failure(f"{folder} has results of this program, which are no links "
+                      "to another tool's; name another folder for results")
+    if record is not None and record["compare"] != paths:
         shutil.rmtree(folder)  # Links and scores of something else.
     # The other tool may have made maps of fewer photographs since.
     shutil.rmtree(os.path.join(folder, "stereo"), ignore_errors=True)

@@ -22,6 +22,10 @@ TOLERANCES = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5]
 _LINES = {"tolerances": "Tolerances", "completeness": "Completenesses",
           "accuracy": "Accuracies", "f1": "F1-scores"}
 
+_SHAPE = {str: {**{key: [float] for key in _LINES},
+                "made_from?": {"cloud": str, "scans": str, "evaluator": str,
+                               "options": [str]}}}
+
 
 def default_evaluator(bin_dir=None):
     """Path of evaluate_point_cloud. Raises Failure if it is not built."""
@@ -105,7 +109,7 @@ def load(folder):
 
     Scores stay where the cloud is gone.
     """
-    scores = files.read_json(os.path.join(folder, "cloud_scores.json")) or {}
+    scores = files.read_json(os.path.join(folder, "cloud_scores.json"), _SHAPE) or {}
     return {name: one for name, one in scores.items()
             if _is_of(one, os.path.join(folder, name + ".ply"))}
 

@@ -20,16 +20,30 @@
 import copy
 import os
 
-from . import files, processes
+from . import files, processes, shapes
 
 _MEASURES = ("seconds", "cpu_seconds", "peak_memory_bytes")
+
+_MACHINE = {"cpu": str, "cores": int, "memory_bytes": (None, float),
+            "gpu": (None, str)}
+_ANY = {
+    "set": str, "method": str, "seed": int, "options": [str],
+    "fusion_options": {str: (None, [str])},
+    "made_with": {str: [{"version": (None, str), "machine": (None, _MACHINE)}]},
+    "views": (None, int), "image_size": (None, [int]), "done": [str],
+    "failed": (None, {"step": str, "message": str}),
+    **{measure: {str: (None, float)} for measure in _MEASURES}}
+_RUN = {**_ANY, "sources": int, "every": int}
+_COMPARISON = {**_ANY, "compare": [str], "photographs": int}
 
 
 def load(folder):
     """The record of a run, None where there is none."""
-    record = files.read_json(_path(folder))
+    record = files.read_json(_path(folder), {})
     if record is not None:
         _modernize(record)
+        shapes.check(_path(folder), record,
+                     _COMPARISON if "compare" in record else _RUN)
     return record
 
 
@@ -126,7 +140,10 @@ def total_seconds(record, cloud="fused"):
 
 def note_failure(folder, step, error):
     """Records why a later step failed, or with None that none did."""
-    record = load(folder)
+    try:
+        record = load(folder)
+    except processes.Failure:  # A damaged record stays as it is.
+        return
     if record is not None:
         record["failed"] = error and {"step": step, "message": error}
         save(folder, record)

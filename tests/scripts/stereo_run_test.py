@@ -436,7 +436,9 @@ class DepthScoresTest(TestCase):
         return write(self.path("bin", "evaluate_depth_maps"), script, True)
 
     def scores(self, tolerances, bounds):
-        part = {"tolerances": [
+        part = {"coverage": 1, "measurement_coverage": 1,
+                "median_absolute_error": None, "median_relative_error": None,
+                "tolerances": [
             {"tolerance": value, "unit": unit, "completeness": 0.5,
              "accuracy": 0.5, "f1": 0.5} for value, unit in tolerances]}
         return {"overall": part, "images": [], "by_textureness": [
