@@ -65,9 +65,10 @@ def command_text(benchmark):
                 "relative_tolerances"):
         value = getattr(benchmark, key)
         if value != getattr(Benchmark("", ""), key):
-            words += ["--" + key, ",".join(f"{one:g}" if isinstance(one, float)
-                                           else str(one) for one in value)
-                      if isinstance(value, list) else str(value)]
+            values = value if isinstance(value, list) else [value]
+            words += ["--" + key, ",".join(
+                one if isinstance(one, str) else processes.number_text(one)
+                for one in values)]
     return " ".join(words + (["--", *benchmark.options]
                              if benchmark.options else []))
 

@@ -30,7 +30,7 @@ _SHAPE = {"overall": _PART,
 
 
 def _list(values):
-    return ",".join(f"{value:g}" for value in values)
+    return ",".join(map(processes.number_text, values))
 
 
 def command(workspace, ground_truth, output, tolerances=None,

@@ -127,6 +127,12 @@ class ResultsTest(TestCase):
 
 
 class TablesTest(TestCase):
+    def test_tolerances_as_text(self):
+        for value, unit, text in ((0.07, "m", "7 cm"), (1.5, "m", "1.5 m"),
+                                  (0.012345678, "m", "1.2345678 cm"),
+                                  (0.5, "%", "0.5 %"), (2.0000001, "%", "2.0000001 %")):
+            self.assertEqual(tables.tolerance_text(value, unit), text)
+
     def test_depth_table(self):
         write_result(self.folder, "s", "plain", depth={
             (0.02, "m"): 0.25, (1, "%"): 0.5},

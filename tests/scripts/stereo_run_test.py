@@ -387,10 +387,23 @@ class CloudScoresTest(TestCase):
             f"{self.path('fused.ply')} --ground_truth_mlp_path scans.mlp "
             "--voxel_size 0.1"])
         # Another tolerance needs another run.
-        cloud_scores.score(self.folder, ["fused"], "scans.mlp", evaluator,
-                           [0.01, 0.05])
+        with self.assertRaisesRegex(Failure, "other tolerances than asked"):
+            cloud_scores.score(self.folder, ["fused"], "scans.mlp", evaluator,
+                               [0.01, 0.05])
         with open(self.path("calls"), encoding="utf-8") as file:
             self.assertEqual(len(file.read().splitlines()), 2)
+
+    def test_tolerances_keep_all_their_digits(self):
+        exact = [0.012345678901234, 1 / 3]
+        evaluator = self.evaluator(self.OUTPUT.replace(
+            "Tolerances: 0.01 0.02", "Tolerances: 0.0123457 0.333333"))
+        for _ in range(2):  # The second time there is nothing to do.
+            scores = cloud_scores.score(self.folder, ["fused"], "scans.mlp",
+                                        evaluator, exact)
+        self.assertEqual(scores["fused"]["tolerances"], exact)
+        with open(self.path("calls"), encoding="utf-8") as file:
+            (call,) = file.read().splitlines()
+        self.assertEqual([float(word) for word in call.split()[1].split(",")], exact)
 
     def test_scores_are_not_taken_for_those_of_something_else(self):
         evaluator = self.evaluator(self.OUTPUT)
@@ -461,6 +474,10 @@ class DepthScoresTest(TestCase):
         depth_scores.score(self.folder, "gt", **{**options, "tolerances": [1]})
         with open(self.path("calls"), encoding="utf-8") as file:
             self.assertEqual(file.read(), "call\ncall\n")
+
+    def test_tolerances_keep_all_their_digits(self):
+        command = depth_scores.command("w", "gt", "out", [0.1234567], [1 / 3, 2.0], [1])
+        self.assertEqual(command[6:11:2], ["0.1234567", "0.3333333333333333,2", "1"])
 
     def test_scored_again_for_other_maps_and_other_measurements(self):
         self.evaluator()
@@ -601,6 +618,11 @@ class BenchmarkCheckTest(TestCase):
                 every=4, tolerances=[0.5], options=["--a", "1"])),
             "scripts/benchmark DATA/fountain --out OUT/x --methods plain --seeds 0,2 "
             "--every 4 --tolerances 0.5 -- --a 1")
+        self.assertIn(
+            "--tolerances 0.1234567,5,1e-05 --relative_tolerances 0.3333333333333333",
+            benchmark.command_text(benchmark.Benchmark(
+                "x", "/x", tolerances=[0.1234567, 5.0, 1e-05],
+                relative_tolerances=[1 / 3])))
         self.assertEqual(
             benchmark.command_text(benchmark.Benchmark("y", "/somewhere/y")),
             "scripts/benchmark DATA/y --out OUT")
