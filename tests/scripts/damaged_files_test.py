@@ -5,16 +5,15 @@ import copy
 import json
 import os
 import sys
-import tempfile
 import unittest
 
 _ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../..")
 sys.path.insert(0, os.path.join(_ROOT, "scripts"))
 from evaluation import (benchmark, cloud_scores, depth_scans,  # noqa: E402
-                        depth_scores, eth3d_scenes, files, processes,
-                        run_record, shapes, stereo_run)
+                        depth_scores, eth3d_scenes, files, run_record,
+                        shapes, stereo_run)
 from evaluation.processes import Failure  # noqa: E402
-from records import make_record  # noqa: E402
+from helpers import TestCase, make_record  # noqa: E402
 
 PART = {"coverage": 0.5, "measurement_coverage": 0.5, "median_absolute_error": 1,
         "median_relative_error": None, "tolerances": [
@@ -43,16 +42,9 @@ class ShapesTest(unittest.TestCase):
                 shapes.check("x.json", value, self.SHAPE)
 
 
-class DamagedFilesTest(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="tapa-")
-        self.addCleanup(folder.cleanup)
-        self.folder = folder.name
-        self.addCleanup(setattr, processes, "say", processes.say)
-        processes.say = lambda text: None
-
+class DamagedFilesTest(TestCase):
     def write(self, text, *parts):
-        path = os.path.join(self.folder, *parts)
+        path = self.path(*parts)
         files.write_text(path, text)
         return path
 
@@ -80,8 +72,7 @@ class DamagedFilesTest(unittest.TestCase):
         self.assertTrue(message.startswith(path), message)
         self.assertIn(words, message)
         self.assertNotIn("\n", message)
-        with open(path, encoding="utf-8") as file:
-            self.assertEqual(file.read(), text)
+        self.assertEqual(self.read(path), text)
 
     def test_records(self):
         keys = [*make_record(), "made_with.stereo.0.machine.cpu",
@@ -115,10 +106,10 @@ class DamagedFilesTest(unittest.TestCase):
 
     def test_nothing_is_done_where_the_record_is_damaged(self):
         self.write("#!/bin/sh\ntouch \"$0\".called\n", "bin", "colmap")
-        os.chmod(os.path.join(self.folder, "bin", "colmap"), 0o755)
+        os.chmod(self.path("bin", "colmap"), 0o755)
         run = stereo_run.Run(
-            data="data", folder=os.path.join(self.folder, "run"), set="s",
-            method="plain", bin_dir=os.path.join(self.folder, "bin"))
+            data="data", folder=self.path("run"), set="s",
+            method="plain", bin_dir=self.path("bin"))
         record = make_record()
         del record["done"]
         run_record.save(run.folder, record)
@@ -129,15 +120,14 @@ class DamagedFilesTest(unittest.TestCase):
 
     def test_links_to_another_tool_s_results_do_not_replace_damaged_ones(self):
         self.write("x", "data", "images", "a.jpg")
-        one = benchmark.Benchmark("s", os.path.join(self.folder, "data"), methods=[])
+        one = benchmark.Benchmark("s", self.path("data"), methods=[])
         one.compare = [("other", self.write("x", "cloud.ply"))]
         for record, text in ((make_record(), "has results of this program"),
                              ({}, "is damaged: it has no key"),
                              ("half", "is damaged: it is not")):
             kept = self.write("maps", "out", "s", "other-0", "stereo", "map")
-            run_record.save(os.path.join(self.folder, "out/s/other-0"), record)
-            ((folder, message),) = benchmark.run(
-                one, os.path.join(self.folder, "out"), "bin")
+            run_record.save(self.path("out/s/other-0"), record)
+            ((folder, message),) = benchmark.run(one, self.path("out"), "bin")
             self.assertIn(text, message)
             self.assertIn(folder, message)
             self.assertTrue(os.path.exists(kept))

@@ -5,7 +5,6 @@ import csv
 import io
 import os
 import sys
-import tempfile
 import unittest
 
 _ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../..")
@@ -15,7 +14,7 @@ from evaluation import (benchmark, eth3d_report, eth3d_scenes,  # noqa: E402
                         published, report, results, run_record, tables)
 from evaluation.methods import LABELS, METHODS, TAPA_ABLATION  # noqa: E402
 from evaluation.processes import Failure  # noqa: E402
-from records import made_with, make_record  # noqa: E402
+from helpers import TestCase, made_with, make_record  # noqa: E402
 
 
 def depth_part(shares):
@@ -48,20 +47,6 @@ def write_result(out, name, method, seed=0, depth=None, low=None, f1=None,
                     "accuracy": [0.1, value], "f1": [0.1, value]}
             for cloud, value in f1.items()})
     return folder
-
-
-class TestCase(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="tapa-")
-        self.addCleanup(folder.cleanup)
-        self.folder = folder.name
-
-    def path(self, *parts):
-        return os.path.join(self.folder, *parts)
-
-    def read(self, *parts):
-        with open(self.path(*parts), encoding="utf-8") as file:
-            return file.read()
 
 
 class ResultsTest(TestCase):

@@ -7,7 +7,6 @@ import signal
 import stat
 import subprocess
 import sys
-import tempfile
 import threading
 import time
 import unittest
@@ -17,6 +16,7 @@ sys.path.insert(0, os.path.join(_ROOT, "scripts"))
 from evaluation import (benchmark, cloud_scores, depth_scores, files,  # noqa: E402
                         links, machine, processes, run_record, stereo_run)
 from evaluation.processes import Failure  # noqa: E402
+from helpers import TestCase  # noqa: E402
 
 # Makes a depth map of 4x3 pixels for each photograph, a PLY, or fails if asked.
 _COLMAP = r"""#!/bin/sh
@@ -48,18 +48,6 @@ def write(path, text="", executable=False):
     if executable:
         os.chmod(path, os.stat(path).st_mode | stat.S_IXUSR)
     return path
-
-
-class TestCase(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="tapa-")
-        self.addCleanup(folder.cleanup)
-        self.folder = folder.name
-        self.addCleanup(setattr, processes, "say", processes.say)
-        processes.say = lambda text: None
-
-    def path(self, *parts):
-        return os.path.join(self.folder, *parts)
 
 
 class StereoRunTest(TestCase):
