@@ -255,9 +255,10 @@ def take_comparison(benchmark, folder, name, paths):
     shutil.rmtree(os.path.join(folder, "stereo"), ignore_errors=True)
     os.makedirs(folder, exist_ok=True)
     record = {"set": benchmark.name, "method": name, "seed": 0, "options": [],
-              "fusion_options": {}, "compare": paths, "done": [], "failed": None, "views": None,
-              "photographs": len(photographs),
-              "image_size": None, "made_with": {}, "seconds": {}, "cpu_seconds": {}, "peak_memory_bytes": {}}
+              "fusion_options": {}, "compare": paths, "done": [],
+              "failed": None, "views": None, "image_size": None,
+              "photographs": len(photographs), "made_with": {},
+              "seconds": {}, "cpu_seconds": {}, "peak_memory_bytes": {}}
     for path in paths:
         if os.path.isdir(path):
             links.make_view_workspace(

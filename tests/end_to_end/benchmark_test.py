@@ -200,14 +200,14 @@ class BenchmarkTest(tiny.TestCase):
         self.assertEqual(look.returncode, 0, look.stderr)
         self.assertIn("not finished", self.read("out/report.md"))
 
-    def test_a_workspace_of_evaluate_dataset_is_continued(self):
-        made = subprocess.run(
-            [os.path.join(SCRIPTS, "evaluate_dataset.sh"), ROOM,
-             self.path("out/room/plain-0"), *SMALL_OPTIONS],
-            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-            check=False, env=dict(os.environ, TAPA_BIN_DIR=BIN_DIR, EVERY="4",
-                                  SOURCES="2"))
-        self.assertEqual(made.returncode, 0, made.stdout)
+    def test_a_workspace_that_was_made_by_hand_is_continued(self):
+        workspace = self.path("out/room/plain-0")
+        for command in (
+                [os.path.join(SCRIPTS, "make_workspace.sh"), ROOM, workspace, "2", "4"],
+                [tiny.COLMAP, "patch_match_stereo", "--workspace_path", workspace,
+                 *SMALL_OPTIONS]):
+            made = tiny.run(command)
+            self.assertEqual(made.returncode, 0, made.stdout)
         result = self.room("--methods", "plain", "--no_clouds")
         self.assertEqual(result.returncode, 0, result.stderr)
         record = self.read_json("out/room/plain-0/record.json")
