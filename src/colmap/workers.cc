@@ -75,6 +75,7 @@ Workers ChooseWorkers(bool use_gpu, const std::string& gpu_index,
   } else {
     workers.devices = ParseList(gpu_index);
   }
+  // The names are read from this line by scripts/evaluation/machine.py.
   for (const int index : workers.devices) {
     CheckIndex(index, list);
     workers.message += (workers.message.empty() ? "Computing on GPU " : ", ") +
