@@ -32,26 +32,15 @@ run() {
 }
 
 # Once with COLMAP's own algorithm, once with TAPA, which completes the walls.
-# Points of both are fused with the same thresholds.
 reconstruct_example() {
-  local out method
-  for method in plain tapa; do
-    out=$build/demo/room_$method
-    mkdir -p "$out"
-    PICTURES=1 TOLERANCES=0.01,0.02,0.05,0.1 MAX_TEXTURENESS=0.75 \
-      run "$here/evaluate_dataset.sh" "$root/examples/room" "$out" \
-      --PatchMatchStereo.tapa "$([[ $method == tapa ]] && echo 1 || echo 0)"
-    run "$bin/colmap" stereo_fusion --workspace_path "$out" \
-      --output_path "$out/fused.ply" "${tapa_fusion[@]}"
-  done
-  for method in plain tapa; do
-    out=$build/demo/room_$method
-    echo
-    [[ $method == plain ]] && echo "COLMAP's own algorithm:" || echo "TAPA:"
-    cat "$out/scores.txt"
-    echo "Pictures: $out/pictures/"
-    echo "Points:   $out/fused.ply"
-  done
+  local out=$build/demo
+  echo "It takes some minutes; $out/room/*/stereo.log tell how far it is." >&2
+  run "$here/benchmark" "$root/examples/room" --out "$out" --num_views 3
+  echo
+  sed -n '/^## room/,/^!/ { /^!/d; p }' "$out/report.md" # Without its pictures.
+  echo "Report:   $out/report.md"
+  echo "Pictures: $out/figures/"
+  echo "Points:   $out/room/plain-0/fused.ply, $out/room/tapa-0/fused.ply"
 }
 
 # Folder of the largest of the models that the mapper made.

@@ -5,7 +5,7 @@ import os
 import re
 import shutil
 
-from . import (cloud_scores, depth_maps, depth_scans, depth_scores, files, links,
+from . import (cloud_scores, depth_maps, depth_scans, depth_scores, links,
                processes, run_record, stereo_run)
 from .methods import METHODS
 from .processes import Failure
@@ -65,9 +65,10 @@ def command_text(benchmark):
                 "relative_tolerances"):
         value = getattr(benchmark, key)
         if value != getattr(Benchmark("", ""), key):
-            words += ["--" + key, ",".join(f"{one:g}" if isinstance(one, float)
-                                           else str(one) for one in value)
-                      if isinstance(value, list) else str(value)]
+            values = value if isinstance(value, list) else [value]
+            words += ["--" + key, ",".join(
+                one if isinstance(one, str) else processes.number_text(one)
+                for one in values)]
     return " ".join(words + (["--", *benchmark.options]
                              if benchmark.options else []))
 
@@ -90,10 +91,6 @@ def check(benchmark):
         stem = os.path.splitext(photographs[0])[0]
         raise Failure(f"{truth} has no depth of any photograph that takes part, "
                       f"such as {stem}.png")
-    for method in benchmark.methods:
-        if method not in METHODS:
-            raise Failure(f"unknown method {method}; there are "
-                          + ", ".join(METHODS))
     for name, path in benchmark.compare:
         check_comparison(name, path)
     for view in benchmark.views:
@@ -191,7 +188,7 @@ class Scorer:
 
 def _beam_options(folder):
     """Beams as wide as the pixels that scans were made from."""
-    about = files.read_json(os.path.join(folder, "scans.json"))
+    about = depth_scans.read_about(folder)
     return ["--beam_divergence_halfangle_deg",
             f"{about['beam_divergence_halfangle_deg']:.6g}"
             if about else "(as scans.json says)"]
@@ -249,15 +246,19 @@ def take_comparison(benchmark, folder, name, paths):
     paths = [os.path.abspath(path) for path in paths]
     photographs = links.photographs(benchmark.data, benchmark.every)
     record = run_record.load(folder)
-    if record is not None and record.get("compare") != paths:
+    if record is not None and "compare" not in record:
+        raise Failure(f"{folder} has results of this program, which are no links "
+                      "to another tool's; name another folder for results")
+    if record is not None and record["compare"] != paths:
         shutil.rmtree(folder)  # Links and scores of something else.
     # The other tool may have made maps of fewer photographs since.
     shutil.rmtree(os.path.join(folder, "stereo"), ignore_errors=True)
     os.makedirs(folder, exist_ok=True)
     record = {"set": benchmark.name, "method": name, "seed": 0, "options": [],
-              "fusion_options": {}, "compare": paths, "done": [], "failed": None, "views": None,
-              "photographs": len(photographs),
-              "image_size": None, "made_with": {}, "seconds": {}, "cpu_seconds": {}, "peak_memory_bytes": {}}
+              "fusion_options": {}, "compare": paths, "done": [],
+              "failed": None, "views": None, "image_size": None,
+              "photographs": len(photographs), "made_with": {},
+              "seconds": {}, "cpu_seconds": {}, "peak_memory_bytes": {}}
     for path in paths:
         if os.path.isdir(path):
             links.make_view_workspace(

@@ -11,6 +11,7 @@ evaluator is evaluate_point_cloud or ETH3D's own program, which takes the same
 options and prints the same lines.
 """
 
+import math
 import os
 import re
 
@@ -21,6 +22,10 @@ TOLERANCES = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5]
 
 _LINES = {"tolerances": "Tolerances", "completeness": "Completenesses",
           "accuracy": "Accuracies", "f1": "F1-scores"}
+
+_SHAPE = {str: {**{key: [float] for key in _LINES},
+                "made_from?": {"cloud": str, "scans": str, "evaluator": str,
+                               "options": [str]}}}
 
 
 def default_evaluator(bin_dir=None):
@@ -42,13 +47,13 @@ def command(evaluator, cloud, scans, tolerances=None, options=()):
     options: more options of the evaluator.
     """
     return [evaluator, "--tolerances",
-            ",".join(f"{value:g}" for value in tolerances or TOLERANCES),
+            ",".join(map(processes.number_text, tolerances or TOLERANCES)),
             "--reconstruction_ply_path", cloud,
             "--ground_truth_mlp_path", scans, *options]
 
 
-def parse(text):
-    """The score in what an evaluator printed."""
+def parse(text, tolerances):
+    """The score at tolerances, in ascending order, in what an evaluator printed."""
     result = {}
     for key, name in _LINES.items():
         matches = re.findall(rf"^{name}: (.*)$", text, re.MULTILINE)
@@ -62,6 +67,11 @@ def parse(text):
     if len({len(values) for values in result.values()}) != 1:
         raise processes.Failure("the evaluator printed lines of different "
                                 "length")
+    printed = result["tolerances"]  # Six digits of each.
+    if len(printed) != len(tolerances) or not all(
+            math.isclose(*pair, rel_tol=1e-5) for pair in zip(printed, tolerances)):
+        raise processes.Failure("the evaluator printed other tolerances than asked")
+    result["tolerances"] = list(tolerances)
     return result
 
 
@@ -72,11 +82,12 @@ def score(folder, clouds, scans, evaluator=None, tolerances=None, options=()):
     """
     path = os.path.join(folder, "cloud_scores.json")
     evaluator = evaluator or default_evaluator()
+    tolerances = sorted(tolerances or TOLERANCES)
     scores = load(folder)
     way = {"scans": files.fingerprint(os.path.dirname(scans)),
            "evaluator": os.path.basename(evaluator), "options": list(options)}
     for name in clouds:
-        if _covers(scores.get(name), tolerances or TOLERANCES, way):
+        if _covers(scores.get(name), tolerances, way):
             continue
         cloud = os.path.join(folder, name + ".ply")
         log = os.path.join(folder, f"cloud_scores_{name}.log")
@@ -85,7 +96,7 @@ def score(folder, clouds, scans, evaluator=None, tolerances=None, options=()):
         processes.say(f"{folder}: score of {name}.ply ...")
         processes.run(command(evaluator, cloud, scans, tolerances, options), log)
         with open(log, encoding="utf-8", errors="replace") as file:
-            scores[name] = parse(file.read())
+            scores[name] = parse(file.read(), tolerances)
         scores[name]["made_from"] = {"cloud": files.fingerprint(cloud), **way}
         files.write_json(path, scores)
     return scores
@@ -105,7 +116,7 @@ def load(folder):
 
     Scores stay where the cloud is gone.
     """
-    scores = files.read_json(os.path.join(folder, "cloud_scores.json")) or {}
+    scores = files.read_json(os.path.join(folder, "cloud_scores.json"), _SHAPE) or {}
     return {name: one for name, one in scores.items()
             if _is_of(one, os.path.join(folder, name + ".ply"))}
 

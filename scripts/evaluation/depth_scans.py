@@ -152,9 +152,15 @@ def _source(data):
     return files.fingerprint(os.path.join(data, "gt_depth"), os.path.join(data, "sparse"))
 
 
+def read_about(out):
+    """What OUT/scans.json says, None where there is none."""
+    return files.read_json(os.path.join(out, "scans.json"), {
+        "beam_divergence_halfangle_deg": float, "made_from?": str})
+
+
 def are_of_other_data(data, out):
     """Whether scans are not of the depth and the poses that a data set has now."""
-    about = files.read_json(os.path.join(out, "scans.json")) or {}
+    about = read_about(out) or {}
     return about.get("made_from", _source(data)) != _source(data)
 
 

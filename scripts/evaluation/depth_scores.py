@@ -17,9 +17,20 @@ RELATIVE_TOLERANCES = [0.5, 1, 2]
 TEXTURENESS = [0.55, 0.6, 0.65, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95, 1]
 LOW_TEXTURE = 0.75
 
+# null is what is not a number, as the accuracy of no estimates.
+_PART = {
+    **{key: (None, float) for key in (
+        "coverage", "measurement_coverage", "median_absolute_error",
+        "median_relative_error")},
+    "tolerances": [{"tolerance": float, "unit": str, **{
+        key: (None, float) for key in ("completeness", "accuracy", "f1")}}]}
+_SHAPE = {"overall": _PART,
+          "by_textureness?": [{"max_textureness": float, "score": _PART}],
+          "made_from?": {"maps": str, "truth": str}}
+
 
 def _list(values):
-    return ",".join(f"{value:g}" for value in values)
+    return ",".join(map(processes.number_text, values))
 
 
 def command(workspace, ground_truth, output, tolerances=None,
@@ -52,7 +63,7 @@ def score(workspace, ground_truth, folder=None, **options):
     raw = path + ".raw"
     processes.run(command(workspace, ground_truth, raw, **options),
                   os.path.join(folder, "depth_scores.log"))
-    scores = files.read_json(raw)
+    scores = files.read_json(raw, _SHAPE)
     scores["made_from"] = {"maps": files.fingerprint(_maps(workspace)),
                            "truth": files.fingerprint(ground_truth)}
     files.write_json(path, scores)
@@ -86,7 +97,7 @@ def _covers(scores, tolerances=None, relative_tolerances=None,
 
 def load(folder):
     """The scores in a folder, None where there are none of the maps in it."""
-    scores = files.read_json(os.path.join(folder, "depth_scores.json"))
+    scores = files.read_json(os.path.join(folder, "depth_scores.json"), _SHAPE)
     return (scores if scores is not None
             and _same(scores, "maps", _maps(folder)) else None)
 

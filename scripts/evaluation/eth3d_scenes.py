@@ -94,12 +94,8 @@ def prepared_scenes(folder):
     for name in sorted(os.listdir(folder)) if os.path.isdir(folder) else []:
         path = os.path.join(folder, name, "set.json")
         if os.path.isfile(path):
-            content = files.read_json(path)
-            try:
-                found.append(Scene(content["scene"], content["resolution"], content["split"]))
-            except (KeyError, TypeError) as error:
-                raise Failure(f"{path} is damaged; remove {os.path.dirname(path)} and "
-                                 "prepare it again") from error
+            content = files.read_json(path, {"scene": str, "resolution": str, "split": str})
+            found.append(Scene(content["scene"], content["resolution"], content["split"]))
     return found
 
 

@@ -5,6 +5,7 @@ import json
 import os
 import zlib
 
+from . import shapes
 from .processes import Failure
 
 
@@ -33,12 +34,18 @@ def write_json(path, value):
     write_text(path, json.dumps(value, indent=2, ensure_ascii=False) + "\n")
 
 
-def read_json(path):
-    """The content of a file, None where there is none."""
+def read_json(path, shape=None):
+    """The content of a file, None where there is none.
+
+    shape: what it must be (shapes.py). Raises Failure if it is not.
+    """
     try:
         with open(path, encoding="utf-8") as file:
-            return json.load(file)
-    except FileNotFoundError:
+            content = json.load(file)
+        if shape is not None:
+            shapes.check(path, content, shape)
+        return content
+    except (FileNotFoundError, NotADirectoryError):
         return None
     except (OSError, ValueError) as error:
         raise Failure(f"{path} cannot be read ({error}); remove it to make it "

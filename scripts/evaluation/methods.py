@@ -1,5 +1,7 @@
 """The methods that are compared, as options of the program."""
 
+from .processes import number_text
+
 _TAPA = ["--PatchMatchStereo.tapa", "1"]
 _PAPER = _TAPA + ["--PatchMatchStereo.tapa_completion", "0",
                   "--PatchMatchStereo.tapa_min_textureness", "0.5"]
@@ -49,8 +51,8 @@ TAPA_ABLATION = [name.replace("paper", "tapa") for name in ABLATION]
 
 def fusion_options(reprojection_error, normal_error=20):
     """Options of stereo_fusion. Pixels and degrees."""
-    return ["--StereoFusion.max_reproj_error", f"{reprojection_error:g}",
-            "--StereoFusion.max_normal_error", f"{normal_error:g}"]
+    return ["--StereoFusion.max_reproj_error", number_text(reprojection_error),
+            "--StereoFusion.max_normal_error", number_text(normal_error)]
 
 
 # The paper's section 6: half of COLMAP's reprojection error of 2 pixels with

@@ -157,7 +157,7 @@ def _read(path):
             content = tomllib.load(file)
     except OSError as error:
         raise Failure(f"{path} cannot be read: {error.strerror}") from error
-    except tomllib.TOMLDecodeError as error:
+    except ValueError as error:  # Neither TOML nor even UTF-8.
         raise Failure(f"{path} is not TOML: {error}") from error
     for key in ("page", "title"):
         if key not in content:

@@ -50,6 +50,11 @@ def command_text(command):
     return " ".join(shlex.quote(word) for word in command)
 
 
+def number_text(value):
+    """A number for a command, which reads it back exactly."""
+    return repr(value).removesuffix(".0")
+
+
 def say(text):
     """Tells the user what happens; results go to standard output instead."""
     print(text, file=sys.stderr, flush=True)

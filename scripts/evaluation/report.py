@@ -118,7 +118,8 @@ class SetReport:
         """Versions and machines of the runs, in one paragraph."""
         runs = [run for method in self._methods
                 for run in self.found.get(method, [])]
-        parts = [part for run in runs for part in run_record.parts(run.record)]
+        parts = [part for run in runs for part in run_record.parts(run.record)
+                 if part]
         if not parts:
             return ""
         versions = sorted({part["version"] for part in parts})

@@ -7,8 +7,8 @@
     made_with            by step, a list of {"version", "machine"}: more than one
                          where a run was stopped and went on with another. See
                          machine.describe(); machine.gpu names the GPUs that the
-                         step computed on. null where the maps or the points were
-                         there before: who made them is not known
+                         step computed on. null in place of one: maps or points
+                         that were there before, so who made them is not known
     views, image_size    number of depth maps; [width, height] of the first
     done                 steps that are complete: stereo and the names of fusions
     seconds, cpu_seconds, peak_memory_bytes
@@ -20,16 +20,30 @@
 import copy
 import os
 
-from . import files, processes
+from . import files, processes, shapes
 
 _MEASURES = ("seconds", "cpu_seconds", "peak_memory_bytes")
+
+_MACHINE = {"cpu": str, "cores": int, "memory_bytes": (None, float),
+            "gpu": (None, str)}
+_ANY = {
+    "set": str, "method": str, "seed": int, "options": [str],
+    "fusion_options": {str: (None, [str])},
+    "made_with": {str: [(None, {"version": str, "machine": _MACHINE})]},
+    "views": (None, int), "image_size": (None, [int]), "done": [str],
+    "failed": (None, {"step": str, "message": str}),
+    **{measure: {str: (None, float)} for measure in _MEASURES}}
+_RUN = {**_ANY, "sources": int, "every": int}
+_COMPARISON = {**_ANY, "compare": [str], "photographs": int}
 
 
 def load(folder):
     """The record of a run, None where there is none."""
-    record = files.read_json(_path(folder))
+    record = files.read_json(_path(folder), {})
     if record is not None:
         _modernize(record)
+        shapes.check(_path(folder), record,
+                     _COMPARISON if "compare" in record else _RUN)
     return record
 
 
@@ -37,10 +51,10 @@ def _modernize(record):
     """Records once had one version and machine for all steps, and no thresholds."""
     if "made_with" not in record and "version" in record:
         record["fusion_options"] = {}
-        version, machine = record.pop("version"), record.pop("machine", None)
+        part = {"version": record.pop("version"),
+                "machine": record.pop("machine", None)}
         record["made_with"] = {
-            step: [{"version": version,
-                    "machine": copy.deepcopy(version and machine)}]
+            step: [copy.deepcopy(part) if part["version"] else None]
             for step in record.get("seconds", {})}
 
 
@@ -60,7 +74,7 @@ def forget(record, step):
 
 def set_unknown(record, step):
     """Of a step that was done before, nobody knows by whom."""
-    record["made_with"][step] = [{"version": None, "machine": None}]
+    record["made_with"][step] = [None]
     set_usage(record, step, None)
 
 
@@ -75,33 +89,31 @@ def end_part(record, step, gpu):
 
     A part is not listed twice.
     """
-    parts = record["made_with"].get(step) or []
-    if parts and parts[-1]["machine"]:
-        parts[-1]["machine"]["gpu"] = gpu
-        if parts[-1] in parts[:-1]:
-            parts.pop()
+    made = record["made_with"].get(step)
+    if made and made[-1]:
+        made[-1]["machine"]["gpu"] = gpu
+        if made[-1] in made[:-1]:
+            made.pop()
 
 
 def parts(record):
-    """All {"version", "machine"} that are known of the steps of a run."""
-    return [part for step in record["made_with"].values() for part in step
-            if part["version"] is not None]
+    """All {"version", "machine"} of the steps of a run, None for what is not known."""
+    return [part for made in record["made_with"].values() for part in made]
 
 
 def stereo_gpus(record):
     """What stereo computed on: names of GPUs, and None for the CPU."""
-    return {part["machine"]["gpu"] for part in record["made_with"].get("stereo", ())
-            if part["machine"]}
+    return {part["machine"]["gpu"]
+            for part in record["made_with"].get("stereo", []) if part}
 
 
 def is_mixed(record):
     """Whether parts of a run were made by other versions or on other machines."""
-    steps = record["made_with"]
     # Fusion never uses a GPU.
-    made = [(part["version"], part["machine"] and {**part["machine"], "gpu": None})
-            for step in steps.values() for part in step]
+    made = [part and {**part, "machine": {**part["machine"], "gpu": None}}
+            for part in parts(record)]
     return (any(one != made[0] for one in made)
-            or len(steps.get("stereo", ())) > 1)
+            or len(record["made_with"].get("stereo", [])) > 1)
 
 
 def known_usage(record, step):
@@ -126,7 +138,10 @@ def total_seconds(record, cloud="fused"):
 
 def note_failure(folder, step, error):
     """Records why a later step failed, or with None that none did."""
-    record = load(folder)
+    try:
+        record = load(folder)
+    except processes.Failure:  # A damaged record stays as it is.
+        return
     if record is not None:
         record["failed"] = error and {"step": step, "message": error}
         save(folder, record)

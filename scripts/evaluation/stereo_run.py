@@ -4,8 +4,8 @@
     record = complete(run)      # raises Failure; the next call goes on
 
 The folder becomes a COLMAP workspace (scripts/make_workspace.sh). A step that is
-done is not done again, and a workspace of scripts/evaluate_dataset.sh can be
-continued. record.json says how the results were made (run_record.py).
+done is not done again; where there are maps without a record, the run goes on from
+them. record.json says how the results were made (run_record.py).
 """
 
 import dataclasses
@@ -151,7 +151,8 @@ def _new_record(run):
     record = {
         "set": run.set, "method": run.method, "seed": run.seed,
         "options": all_options(run), "fusion_options": {},
-        "sources": run.sources, "every": run.every, "made_with": {}, "views": None, "image_size": None,
+        "sources": run.sources, "every": run.every, "made_with": {},
+        "views": None, "image_size": None,
         "done": [], "failed": None,
         "seconds": {}, "cpu_seconds": {}, "peak_memory_bytes": {}}
     if _map_paths(run.folder):

@@ -44,8 +44,8 @@ def number(value, digits=0):
 def tolerance_text(value, unit="m"):
     """2 cm, 1.5 m or 0.5 %."""
     if unit == "%":
-        return f"{value:g} %"
-    return f"{100 * value:g} cm" if value < 1 else f"{value:g} m"
+        return f"{value:.12g} %"
+    return f"{100 * value:.12g} cm" if value < 1 else f"{value:.12g} m"
 
 
 def score_text(score):

@@ -34,16 +34,17 @@ void CheckIndex(int index, const DeviceList& list) {
 }
 
 std::string Describe(int index, const DeviceList& list) {
-  return "GPU " + std::to_string(index) + " (" + list.devices[index].name + ")";
+  return std::to_string(index) + " (" + list.devices[index].name + ")";
 }
 
-// The GPUs of the list, in its order, and their names.
-std::string Names(const std::vector<int>& indices, const DeviceList& list) {
+// scripts/evaluation/machine.py reads the names from this line.
+std::string ComputingOn(const std::vector<int>& indices,
+                        const DeviceList& list) {
   std::string names;
   for (const int index : indices) {
     names += (names.empty() ? "" : ", ") + Describe(index, list);
   }
-  return names;
+  return "Computing on GPU " + names + ".";
 }
 
 Workers CpuInstead(const std::string& why) {
@@ -60,17 +61,15 @@ Workers AllGpus(const DeviceList& list,
     if (why.empty()) {
       workers.devices.push_back(i);
     } else {
-      wrong += (wrong.empty() ? "" : "; ") + Describe(i, list) +
+      wrong += (wrong.empty() ? "GPU " : "; GPU ") + Describe(i, list) +
                " cannot be used: " + why;
     }
   }
   if (workers.devices.empty()) {
     return CpuInstead(wrong);
   }
-  workers.message = "Computing on " + Names(workers.devices, list) + ".";
-  if (!wrong.empty()) {
-    workers.message += " " + wrong + ".";
-  }
+  workers.message = ComputingOn(workers.devices, list) +
+                    (wrong.empty() ? "" : "\n" + wrong + ".");
   return workers;
 }
 
@@ -82,12 +81,12 @@ Workers NamedGpus(const std::vector<int>& indices, const DeviceList& list,
   for (const int index : std::set<int>(indices.begin(), indices.end())) {
     const std::string why = what_is_wrong(index);
     if (!why.empty()) {
-      throw Failure("PatchMatchStereo.gpu_index names " +
+      throw Failure("PatchMatchStereo.gpu_index names GPU " +
                     Describe(index, list) + ", which cannot be used: " + why +
                     "; PatchMatchStereo.use_gpu 0 computes on the CPU");
     }
   }
-  return {indices, "Computing on " + Names(indices, list) + "."};
+  return {indices, ComputingOn(indices, list)};
 }
 
 }  // namespace

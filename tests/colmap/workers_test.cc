@@ -21,13 +21,14 @@ Workers Choose(const std::string& gpu_index) {
 
 TEST(Workers, AreTheGpusOfTheList) {
   EXPECT_EQ(Choose("-1").devices, (std::vector<int>{0, 2}));
-  EXPECT_EQ(Choose("-1").message,
-            "Computing on GPU 0 (Fast), GPU 2 (Slow). GPU 1 (Old) cannot be "
-            "used: it is too old.");
+  EXPECT_EQ(
+      Choose("-1").message,
+      "Computing on GPU 0 (Fast), 2 (Slow).\nGPU 1 (Old) cannot be used: it "
+      "is too old.");
   EXPECT_EQ(Choose("2").devices, (std::vector<int>{2}));
   EXPECT_EQ(Choose("2, 0").devices, (std::vector<int>{2, 0}));
   EXPECT_EQ(Choose("0,0").devices, (std::vector<int>{0, 0}));
-  EXPECT_EQ(Choose("0,0").message, "Computing on GPU 0 (Fast), GPU 0 (Fast).");
+  EXPECT_EQ(Choose("0,0").message, "Computing on GPU 0 (Fast), 0 (Fast).");
 }
 
 TEST(Workers, AreTheCpuWhereThereIsNoGpuOrNoneIsWanted) {

@@ -200,14 +200,14 @@ class BenchmarkTest(tiny.TestCase):
         self.assertEqual(look.returncode, 0, look.stderr)
         self.assertIn("not finished", self.read("out/report.md"))
 
-    def test_a_workspace_of_evaluate_dataset_is_continued(self):
-        made = subprocess.run(
-            [os.path.join(SCRIPTS, "evaluate_dataset.sh"), ROOM,
-             self.path("out/room/plain-0"), *SMALL_OPTIONS],
-            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-            check=False, env=dict(os.environ, TAPA_BIN_DIR=BIN_DIR, EVERY="4",
-                                  SOURCES="2"))
-        self.assertEqual(made.returncode, 0, made.stdout)
+    def test_a_workspace_that_was_made_by_hand_is_continued(self):
+        workspace = self.path("out/room/plain-0")
+        for command in (
+                [os.path.join(SCRIPTS, "make_workspace.sh"), ROOM, workspace, "2", "4"],
+                [tiny.COLMAP, "patch_match_stereo", "--workspace_path", workspace,
+                 *SMALL_OPTIONS]):
+            made = tiny.run(command)
+            self.assertEqual(made.returncode, 0, made.stdout)
         result = self.room("--methods", "plain", "--no_clouds")
         self.assertEqual(result.returncode, 0, result.stderr)
         record = self.read_json("out/room/plain-0/record.json")
@@ -224,6 +224,19 @@ class BenchmarkTest(tiny.TestCase):
         self.assertIn("was made with options", result.stderr)
         self.assertEqual(self.read_json("out/room/plain-0/record.json")["done"],
                          before["done"])
+        self.check_a_damaged_record()
+
+    def check_a_damaged_record(self):
+        path = self.path("out/room/plain-0/record.json")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write("{}")
+        for arguments in ([], ["--report_only"]):
+            result = self.room("--methods", "plain", "--no_clouds", *arguments)
+            self.assertEqual(result.returncode, 1)
+            self.assertIn(f"ERROR: {path} is damaged: it has no key ", result.stderr)
+            self.assertNotIn("Traceback", result.stderr)
+        self.assertTrue(os.path.exists(self.path("out/room/plain-0/fused.ply")))
+        self.assertEqual(self.read("out/room/plain-0/record.json"), "{}")
 
     def test_dry_run_does_nothing(self):
         result = self.room("--dry_run", "--no_clouds", "--methods", "tapa")
@@ -285,11 +298,12 @@ set = "absent"
                 (out, "either data sets or --plan"),
                 ([ROOM, *out, "--plan", "x"], "either data sets or --plan"),
                 ([ROOM], "--out is required"),
-                ([ROOM, *out, "--methods", "none"], "unknown method none"),
-                ([ROOM, *out, "--seeds", "x"], "'x' is not a list of numbers"),
+                ([ROOM, *out, "--methods", "none"], "there is no method none; there are plain"),
+                ([ROOM, *out, "--seeds", "x"], "'x' is not a list of whole numbers"),
                 ([ROOM, *out, "--tolerances", "0,1"], "positive numbers"),
                 ([ROOM, *out, "--tolerances", "nan"], "positive numbers"),
-                ([ROOM, *out, "--every", "0"], "'0' is not a positive number"),
+                ([ROOM, *out, "--every", "0"], "'0' is not a whole number from 1 on"),
+                ([ROOM, *out, "--num_views", "-1"], "'-1' is not a whole number"),
                 ([ROOM, *out, "--frobnicate"], "--frobnicate"),
                 ([ROOM, *out, "--compare", "x"], "'x' is not NAME=PATH"),
                 ([ROOM, *out, "--compare", "x=none"], "there is no none"),

@@ -619,7 +619,7 @@ class Pipeline(Case):
     def test_8_wrong_words(self):
         for words, text in ((("run", "--methods", "plane"), "no method plane"),
                             (("run", "--scenes", "attic"), "no scene attic"),
-                            (("run", "--seeds", "one"), "'one' is no list"),
+                            (("run", "--seeds", "one"), "'one' is not a list of whole numbers"),
                             (("evaluate", "--eth3d_evaluator", "/nowhere"), "is no program"),
                             (("evaluate", "--eth3d_evaluator", "/tmp"), "is no program"),
                             (("submit", "--seeds", "0,1"), "one seed"),

@@ -9,7 +9,6 @@ Exits with 77 (skipped) where the data set is absent.
 
 import json
 import os
-import re
 import shutil
 import subprocess
 import sys
@@ -38,7 +37,7 @@ CASES = {
     },
     "fountain": {
         "data": "../shared/data/fountain",
-        "options": ["--PatchMatchStereo.max_image_size", "768"],
+        "arguments": ["--image_size", "768"],
         "plain": [
             ("all", "accuracy", "%", 1.0, ">=", 0.93),
             ("all", "f1", "%", 1.0, ">=", 0.88),
@@ -57,7 +56,7 @@ CASES = {
     },
     "office": {
         "data": "../shared/data/office_entrance",
-        "environment": {"EVERY": "4"},
+        "arguments": ["--every", "4"],
         "plain": [
             ("all", "accuracy", "m", 0.10, ">=", 0.85),
             ("all", "f1", "m", 0.10, ">=", 0.47),
@@ -124,34 +123,35 @@ def check_gain(bounds, plain, tapa):
     return failures
 
 
-def cpu_seconds(log):
-    """Per megapixel and view, both passes together."""
-    values = [float(v) for v in re.findall(
-        r"\(CPU ([0-9.]+) s\) per megapixel", log)]
-    if not values:
-        raise ValueError("the log does not say how long a megapixel took")
-    return 2 * sum(values) / len(values)
-
-
-def run(source_dir, bin_dir, out, case, options):
-    """Scores by part, and CPU seconds."""
+def run(source_dir, bin_dir, out, case):
+    """Runs COLMAP's own algorithm and TAPA. Returns the exit status."""
     shutil.rmtree(out, ignore_errors=True)
-    environment = dict(os.environ, TAPA_BIN_DIR=bin_dir, MAX_TEXTURENESS="0.75",
-                       **case.get("environment", {}))
-    result = subprocess.run(
-        [os.path.join(source_dir, "scripts", "evaluate_dataset.sh"),
-         os.path.join(source_dir, case["data"]), out,
-         *case.get("options", []), *options],
-        env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-        text=True, check=False)
-    print(result.stdout)
-    if result.returncode != 0:
-        raise ValueError(f"exit status {result.returncode}")
-    with open(os.path.join(out, "scores.json"), encoding="utf-8") as file:
-        scores = json.load(file)
-    return ({"all": scores["overall"],
-             "low": scores["by_textureness"][0]["score"]},
-            cpu_seconds(result.stdout))
+    status = subprocess.run(
+        [os.path.join(source_dir, "scripts", "benchmark"),
+         os.path.join(source_dir, case["data"]), "--out", out, "--no_clouds",
+         *case.get("arguments", [])],
+        env=dict(os.environ, TAPA_BIN_DIR=bin_dir), check=False).returncode
+    if status == 0:
+        with open(os.path.join(out, "report.md"), encoding="utf-8") as file:
+            print(file.read())
+    return status
+
+
+def read_json(path):
+    with open(path, encoding="utf-8") as file:
+        return json.load(file)
+
+
+def read_results(folder):
+    """Scores by part, and CPU seconds of both passes per megapixel and view."""
+    scores, record = (read_json(os.path.join(folder, name))
+                      for name in ("depth_scores.json", "record.json"))
+    (low,) = (entry["score"] for entry in scores["by_textureness"]
+              if entry["max_textureness"] == 0.75)
+    width, height = record["image_size"]
+    return ({"all": scores["overall"], "low": low},
+            record["cpu_seconds"]["stereo"] * 1e6
+            / (record["views"] * width * height))
 
 
 def main():
@@ -161,12 +161,12 @@ def main():
         print(f"SKIPPED: {case['data']} is not there")
         return 77
     out = os.path.join(out_dir, name)
-    try:
-        plain, plain_time = run(source_dir, bin_dir, out, case, [])
-        tapa, tapa_time = run(source_dir, bin_dir, out + "_tapa", case,
-                              ["--PatchMatchStereo.tapa", "1"])
-    except ValueError as error:
-        return report(False, str(error))
+    status = run(source_dir, bin_dir, out, case)
+    if status != 0:
+        return report(False, f"scripts/benchmark: exit status {status}")
+    (plain, plain_time), (tapa, tapa_time) = (
+        read_results(os.path.join(out, os.path.basename(case["data"]), method))
+        for method in ("plain-0", "tapa-0"))
     failures = (check_scores(case["plain"], plain)
                 + check_scores(case["tapa"], tapa)
                 + check_gain(case["gain"], plain, tapa))

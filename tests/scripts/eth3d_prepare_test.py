@@ -11,8 +11,9 @@ import numpy as np
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../scripts"))
 from evaluation import (colmap_model, depth_maps, eth3d_prepare, eth3d_scenes,  # noqa: E402
-                        eth3d_submit, files)
+                        eth3d_submit, run_record)
 from evaluation.processes import Failure  # noqa: E402
+from helpers import make_record  # noqa: E402
 
 UNDISTORTED = colmap_model.Camera("PINHOLE", 150, 100, (100.0, 100.0, 75.0, 50.0))
 # Sees less than the undistorted photograph, and is not centred.
@@ -138,7 +139,7 @@ class Submission(unittest.TestCase):
             file.write(data)
 
     def write_record(self, seconds):
-        files.write_json(os.path.join(self.run_folder, "record.json"), {"seconds": seconds})
+        run_record.save(self.run_folder, make_record(seconds=seconds))
 
     def add(self):
         eth3d_submit.add_scene(self.track, "office", self.run_folder, "fused")

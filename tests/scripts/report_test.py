@@ -5,16 +5,16 @@ import csv
 import io
 import os
 import sys
-import tempfile
 import unittest
 
 _ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../..")
 sys.path.insert(0, os.path.join(_ROOT, "scripts"))
 from evaluation import (benchmark, eth3d_report, eth3d_scenes,  # noqa: E402
                         paper_tables, figures, files, pictures, plan,
-                        published, report, results, tables)
+                        published, report, results, run_record, tables)
 from evaluation.methods import LABELS, METHODS, TAPA_ABLATION  # noqa: E402
 from evaluation.processes import Failure  # noqa: E402
+from helpers import TestCase, made_with, make_record  # noqa: E402
 
 
 def depth_part(shares):
@@ -30,24 +30,11 @@ def depth_part(shares):
             "tolerances": entries}
 
 
-def made_with(version="COLMAP 3.8", gpu=None):
-    return {"version": version, "machine": {
-        "cpu": "abacus", "cores": 2, "memory_bytes": 8e9, "gpu": gpu}}
-
-
 def write_result(out, name, method, seed=0, depth=None, low=None, f1=None,
                  options=(), **record):
-    """depth, low: as depth_part(); f1: of points at 2 cm, by cloud."""
+    """depth, low: as depth_part(); f1: of points at 2 cm, by cloud; record: as values."""
     folder = os.path.join(out, name, f"{method}-{seed}")
-    files.write_json(os.path.join(folder, "record.json"), {
-        "set": name, "method": method, "seed": seed, "sources": 10, "every": 1,
-        "options": ["--PatchMatchStereo.seed", str(seed),
-                    *METHODS.get(method, []), *options],
-        "made_with": {"stereo": [made_with()]}, "views": 4,
-        "image_size": [500, 500],
-        "done": ["stereo"], "failed": None, "seconds": {"stereo": 70.0},
-        "cpu_seconds": {"stereo": 120.0},
-        "peak_memory_bytes": {"stereo": 300e6}, **record})
+    run_record.save(folder, make_record(name, method, seed, options, **record))
     if depth:
         files.write_json(os.path.join(folder, "depth_scores.json"), {
             "overall": depth_part(depth), "images": [],
@@ -60,20 +47,6 @@ def write_result(out, name, method, seed=0, depth=None, low=None, f1=None,
                     "accuracy": [0.1, value], "f1": [0.1, value]}
             for cloud, value in f1.items()})
     return folder
-
-
-class TestCase(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="tapa-")
-        self.addCleanup(folder.cleanup)
-        self.folder = folder.name
-
-    def path(self, *parts):
-        return os.path.join(self.folder, *parts)
-
-    def read(self, *parts):
-        with open(self.path(*parts), encoding="utf-8") as file:
-            return file.read()
 
 
 class ResultsTest(TestCase):
@@ -139,6 +112,12 @@ class ResultsTest(TestCase):
 
 
 class TablesTest(TestCase):
+    def test_tolerances_as_text(self):
+        for value, unit, text in ((0.07, "m", "7 cm"), (1.5, "m", "1.5 m"),
+                                  (0.012345678, "m", "1.2345678 cm"),
+                                  (0.5, "%", "0.5 %"), (2.0000001, "%", "2.0000001 %")):
+            self.assertEqual(tables.tolerance_text(value, unit), text)
+
     def test_depth_table(self):
         write_result(self.folder, "s", "plain", depth={
             (0.02, "m"): 0.25, (1, "%"): 0.5},
@@ -463,6 +442,9 @@ class PlanTest(TestCase):
                 ("\"Second\"", "\"x\"\nlevel = true", "level of a section")):
             with self.assertRaisesRegex(Failure, text):
                 self.plan_of(_PLAN.replace(old, new))
+        files.write_bytes(self.path("latin.toml"), b'title = "\xe9"')
+        with self.assertRaisesRegex(Failure, "latin.toml is not TOML"):
+            plan.Plan(self.path("latin.toml"), self.folder, "/none")
         with self.assertRaisesRegex(Failure, "none.toml cannot be read"):
             plan.Plan(self.path("none.toml"), self.folder, "/none")
 

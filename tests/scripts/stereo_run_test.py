@@ -7,7 +7,6 @@ import signal
 import stat
 import subprocess
 import sys
-import tempfile
 import threading
 import time
 import unittest
@@ -17,6 +16,7 @@ sys.path.insert(0, os.path.join(_ROOT, "scripts"))
 from evaluation import (benchmark, cloud_scores, depth_scores, files,  # noqa: E402
                         links, machine, processes, run_record, stereo_run)
 from evaluation.processes import Failure  # noqa: E402
+from helpers import TestCase  # noqa: E402
 
 # Makes a depth map of 4x3 pixels for each photograph, a PLY, or fails if asked.
 _COLMAP = r"""#!/bin/sh
@@ -48,18 +48,6 @@ def write(path, text="", executable=False):
     if executable:
         os.chmod(path, os.stat(path).st_mode | stat.S_IXUSR)
     return path
-
-
-class TestCase(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="tapa-")
-        self.addCleanup(folder.cleanup)
-        self.folder = folder.name
-        self.addCleanup(setattr, processes, "say", processes.say)
-        processes.say = lambda text: None
-
-    def path(self, *parts):
-        return os.path.join(self.folder, *parts)
 
 
 class StereoRunTest(TestCase):
@@ -171,10 +159,9 @@ class StereoRunTest(TestCase):
         self.assertIsNone(record["peak_memory_bytes"]["stereo"])
         self.assertEqual(record["fusion_options"],
                          {"fused": None, "fused_default": []})
-        unknown = {"version": None, "machine": None}
-        self.assertEqual(record["made_with"]["fused"], [unknown])
+        self.assertEqual(record["made_with"]["fused"], [None])
         # This program looked whether all maps were there.
-        self.assertEqual(record["made_with"]["stereo"][0], unknown)
+        self.assertIsNone(record["made_with"]["stereo"][0])
         self.assertTrue(run_record.is_mixed(record))
         self.assertGreater(record["seconds"]["fused_default"], 0)
         self.assertIsNone(run_record.total_seconds(record))
@@ -387,10 +374,23 @@ class CloudScoresTest(TestCase):
             f"{self.path('fused.ply')} --ground_truth_mlp_path scans.mlp "
             "--voxel_size 0.1"])
         # Another tolerance needs another run.
-        cloud_scores.score(self.folder, ["fused"], "scans.mlp", evaluator,
-                           [0.01, 0.05])
+        with self.assertRaisesRegex(Failure, "other tolerances than asked"):
+            cloud_scores.score(self.folder, ["fused"], "scans.mlp", evaluator,
+                               [0.01, 0.05])
         with open(self.path("calls"), encoding="utf-8") as file:
             self.assertEqual(len(file.read().splitlines()), 2)
+
+    def test_tolerances_keep_all_their_digits(self):
+        exact = [0.012345678901234, 1 / 3]
+        evaluator = self.evaluator(self.OUTPUT.replace(
+            "Tolerances: 0.01 0.02", "Tolerances: 0.0123457 0.333333"))
+        for _ in range(2):  # The second time there is nothing to do.
+            scores = cloud_scores.score(self.folder, ["fused"], "scans.mlp",
+                                        evaluator, exact)
+        self.assertEqual(scores["fused"]["tolerances"], exact)
+        with open(self.path("calls"), encoding="utf-8") as file:
+            (call,) = file.read().splitlines()
+        self.assertEqual([float(word) for word in call.split()[1].split(",")], exact)
 
     def test_scores_are_not_taken_for_those_of_something_else(self):
         evaluator = self.evaluator(self.OUTPUT)
@@ -436,7 +436,9 @@ class DepthScoresTest(TestCase):
         return write(self.path("bin", "evaluate_depth_maps"), script, True)
 
     def scores(self, tolerances, bounds):
-        part = {"tolerances": [
+        part = {"coverage": 1, "measurement_coverage": 1,
+                "median_absolute_error": None, "median_relative_error": None,
+                "tolerances": [
             {"tolerance": value, "unit": unit, "completeness": 0.5,
              "accuracy": 0.5, "f1": 0.5} for value, unit in tolerances]}
         return {"overall": part, "images": [], "by_textureness": [
@@ -459,6 +461,10 @@ class DepthScoresTest(TestCase):
         depth_scores.score(self.folder, "gt", **{**options, "tolerances": [1]})
         with open(self.path("calls"), encoding="utf-8") as file:
             self.assertEqual(file.read(), "call\ncall\n")
+
+    def test_tolerances_keep_all_their_digits(self):
+        command = depth_scores.command("w", "gt", "out", [0.1234567], [1 / 3, 2.0], [1])
+        self.assertEqual(command[6:11:2], ["0.1234567", "0.3333333333333333,2", "1"])
 
     def test_scored_again_for_other_maps_and_other_measurements(self):
         self.evaluator()
@@ -599,6 +605,11 @@ class BenchmarkCheckTest(TestCase):
                 every=4, tolerances=[0.5], options=["--a", "1"])),
             "scripts/benchmark DATA/fountain --out OUT/x --methods plain --seeds 0,2 "
             "--every 4 --tolerances 0.5 -- --a 1")
+        self.assertIn(
+            "--tolerances 0.1234567,5,1e-05 --relative_tolerances 0.3333333333333333",
+            benchmark.command_text(benchmark.Benchmark(
+                "x", "/x", tolerances=[0.1234567, 5.0, 1e-05],
+                relative_tolerances=[1 / 3])))
         self.assertEqual(
             benchmark.command_text(benchmark.Benchmark("y", "/somewhere/y")),
             "scripts/benchmark DATA/y --out OUT")

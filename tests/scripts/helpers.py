@@ -1,0 +1,45 @@
+"""What the tests of scripts/evaluation share; these find that package."""
+
+import os
+import tempfile
+import unittest
+
+from evaluation import processes
+from evaluation.methods import METHODS
+
+
+class TestCase(unittest.TestCase):
+    """A test with a folder of its own, self.folder, in which nothing is said."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="tapa-")
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+        self.addCleanup(setattr, processes, "say", processes.say)
+        processes.say = lambda text: None
+
+    def path(self, *parts):
+        return os.path.join(self.folder, *parts)
+
+    def read(self, *parts):
+        with open(self.path(*parts), encoding="utf-8") as file:
+            return file.read()
+
+
+def made_with(version="COLMAP 3.8", gpu=None):
+    """How a step of a run was made that nobody has run."""
+    return {"version": version, "machine": {
+        "cpu": "abacus", "cores": 2, "memory_bytes": 8e9, "gpu": gpu}}
+
+
+def make_record(name="s", method="plain", seed=0, options=(), **values):
+    """The record of such a run. values: in place of those here."""
+    return {
+        "set": name, "method": method, "seed": seed, "sources": 10, "every": 1,
+        "options": ["--PatchMatchStereo.seed", str(seed),
+                    *METHODS.get(method, []), *options],
+        "fusion_options": {}, "made_with": {"stereo": [made_with()]},
+        "views": 4, "image_size": [500, 500], "done": ["stereo"],
+        "failed": None, "seconds": {"stereo": 70.0},
+        "cpu_seconds": {"stereo": 120.0},
+        "peak_memory_bytes": {"stereo": 300e6}, **values}
