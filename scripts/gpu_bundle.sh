@@ -45,8 +45,10 @@ cat >"$out/run.sh" <<'RUN'
 # with 77 where there is no GPU.
 here=$(cd "$(dirname "$0")" && pwd)
 export LD_LIBRARY_PATH="$here/lib${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}"
-"$here/cuda_device_test" || exit 1
-exec "$here/gpu_benchmark" "$@"
+tests=0
+"$here/cuda_device_test" || tests=$?
+"$here/gpu_benchmark" "$@" || exit
+exit "$tests"
 RUN
 chmod +x "$out/run.sh"
 

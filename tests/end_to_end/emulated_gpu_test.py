@@ -8,46 +8,54 @@ import unittest
 import tiny_workspace as tiny
 
 
+CPU = {"use_gpu": 0}
+
+
+def gpu(index):
+    return {"gpu_index": index}
+
+
 class EmulatedGpu(tiny.TestCase):
 
-    def stereo(self, name, gpu_index, **environment):
+    def stereo(self, name, workers, **environment):
         """A run in a workspace of its own."""
         folder = self.path(name)
         self.names = tiny.make_workspace(folder, num_views=3)
-        result = tiny.run(
-            [os.environ["EMULATED_GPU_STEREO"], folder, gpu_index],
-            env=dict(os.environ, **environment))
+        command = tiny.stereo_command(folder, tapa=1, num_threads=1,
+                                      max_image_size=64, **workers)
+        result = tiny.run([os.environ["EMULATED_GPU_STEREO"]] + command[2:],
+                          env=dict(os.environ, **environment))
         return result, folder
 
-    def maps(self, name, gpu_index, **environment):
+    def maps(self, name, workers, **environment):
         """Files and output of a run that succeeds."""
-        result, folder = self.stereo(name, gpu_index, **environment)
+        result, folder = self.stereo(name, workers, **environment)
         self.assert_success(result)
         return tiny.snapshot(folder), result.stdout
 
     def test_maps_are_as_good_as_those_of_the_cpu(self):
-        _, cpu = self.stereo("cpu", "none")
-        result, gpu = self.stereo("gpu", "-1")
+        _, cpu_folder = self.stereo("cpu", CPU)
+        result, gpu_folder = self.stereo("gpu", gpu("-1"))
         self.assert_success(result)
         self.assertIn("Computing on GPU 0 (Emulated GPU).", result.stdout)
         for index, name in enumerate(self.names):
             right = []
-            for folder in cpu, gpu:
+            for folder in cpu_folder, gpu_folder:
                 errors, count = tiny.depth_errors(folder, name, index)
                 right.append(sum(error < 0.01 for error in errors) / count)
             self.assertGreater(right[0], 0.3)
             self.assertGreater(right[1], right[0] - 0.03)
 
     def test_maps_do_not_depend_on_the_number_of_workers(self):
-        expected, _ = self.maps("one", "0")
-        actual, output = self.maps("two", "0,0")
+        expected, _ = self.maps("one", gpu("0"))
+        actual, output = self.maps("two", gpu("0,0"))
         self.assert_same_files(expected, actual)
         for name in self.names:
             self.assertEqual(output.count(" %s: " % name), 2, output)
 
     def test_views_that_need_more_memory_are_left_to_the_cpu(self):
-        expected, _ = self.maps("cpu", "none")
-        actual, output = self.maps("little", "-1", EMULATED_GPU_MEMORY_KB="68")
+        expected, _ = self.maps("cpu", CPU)
+        actual, output = self.maps("little", gpu("-1"), EMULATED_GPU_MEMORY_KB="68")
         self.assert_same_files(expected, actual)
         for name in self.names:
             self.assertRegex(
@@ -56,10 +64,10 @@ class EmulatedGpu(tiny.TestCase):
                 name)
 
     def test_a_gpu_that_fails_leaves_the_rest_to_the_cpu(self):
-        _, output = self.maps("sound", "0")
+        _, output = self.maps("sound", gpu("0"))
         calls = int(re.search(r"^Calls: (\d+)$", output, re.M)[1])
         for workers in "0", "0,0":
-            _, output = self.maps("failing " + workers, workers,
+            _, output = self.maps("failing " + workers, gpu(workers),
                                   EMULATED_GPU_FAILING_CALL=str(calls // 2))
             self.assertIn("failed at view", output)
             self.assertIn("unspecified launch failure", output)
@@ -69,15 +77,15 @@ class EmulatedGpu(tiny.TestCase):
                                  len(workers.split(",")))
 
     def test_a_gpu_that_computes_wrongly_is_not_used(self):
-        expected, _ = self.maps("cpu", "none")
-        actual, output = self.maps("wrong", "-1",
+        expected, _ = self.maps("cpu", CPU)
+        actual, output = self.maps("wrong", gpu("-1"),
                                    EMULATED_GPU_BLACK_TEXTURES="1")
         self.assert_same_files(expected, actual)
         self.assertIn("GPU 0 (Emulated GPU) cannot be used: it computes "
                       "wrongly", output)
         self.assertIn("the CPU is used", output)
 
-        result, _ = self.stereo("named", "0", EMULATED_GPU_BLACK_TEXTURES="1")
+        result, _ = self.stereo("named", gpu("0"), EMULATED_GPU_BLACK_TEXTURES="1")
         self.assert_one_error(result, "gpu_index names GPU 0", "use_gpu 0")
 
 
