@@ -48,6 +48,13 @@ export LD_LIBRARY_PATH="$here/lib${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}"
 tests=0
 "$here/cuda_device_test" || tests=$?
 "$here/gpu_benchmark" "$@" || exit
+# Comes with CUDA's toolkit; slow.
+if [ "$tests" -eq 0 ] && command -v compute-sanitizer >/dev/null; then
+  for tool in memcheck racecheck synccheck; do
+    compute-sanitizer --tool "$tool" --error-exitcode 1 \
+      "$here/cuda_device_test" --gtest_filter='*ReportsSupport' || tests=$?
+  done
+fi
 exit "$tests"
 RUN
 chmod +x "$out/run.sh"

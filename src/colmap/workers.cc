@@ -8,6 +8,10 @@
 namespace tapa {
 namespace {
 
+// Of every GPU, where none is named: while one view is read or written, or the
+// CPU looks for its planes, the GPU sweeps the other.
+constexpr int kWorkersPerGpu = 2;
+
 std::vector<int> ParseList(const std::string& text) {
   std::vector<int> numbers;
   std::istringstream list(text);
@@ -59,7 +63,7 @@ Workers AllGpus(const DeviceList& list,
   for (int i = 0; i < static_cast<int>(list.devices.size()); ++i) {
     const std::string why = what_is_wrong(i);
     if (why.empty()) {
-      workers.devices.push_back(i);
+      workers.devices.insert(workers.devices.end(), kWorkersPerGpu, i);
     } else {
       wrong += (wrong.empty() ? "GPU " : "; GPU ") + Describe(i, list) +
                " cannot be used: " + why;

@@ -20,10 +20,11 @@ struct Workers {
   std::string message;
 };
 
-// gpu_index: "-1", all GPUs, or numbers separated by commas; a GPU that is
-// named twice has two workers. Without any GPU that can be used the CPU is.
-// try_device: says what is wrong with a GPU, or nothing (device_trial.h).
-// Throws Failure if the list is none, or names a GPU that cannot be used.
+// gpu_index: "-1", all GPUs with two workers each, or numbers separated by
+// commas: a worker for each, so that a GPU may be named twice. Without any GPU
+// that can be used the CPU is. try_device: says what is wrong with a GPU, or
+// nothing (device_trial.h). Throws Failure if the list is none, or names a GPU
+// that cannot be used.
 Workers ChooseWorkers(bool use_gpu, const std::string& gpu_index,
                       const DeviceList& list,
                       const std::function<std::string(int)>& try_device);

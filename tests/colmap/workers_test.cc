@@ -20,11 +20,10 @@ Workers Choose(const std::string& gpu_index) {
 }
 
 TEST(Workers, AreTheGpusOfTheList) {
-  EXPECT_EQ(Choose("-1").devices, (std::vector<int>{0, 2}));
-  EXPECT_EQ(
-      Choose("-1").message,
-      "Computing on GPU 0 (Fast), 2 (Slow).\nGPU 1 (Old) cannot be used: it "
-      "is too old.");
+  EXPECT_EQ(Choose("-1").devices, (std::vector<int>{0, 0, 2, 2}));
+  EXPECT_EQ(Choose("-1").message,
+            "Computing on GPU 0 (Fast), 0 (Fast), 2 (Slow), 2 (Slow).\n"
+            "GPU 1 (Old) cannot be used: it is too old.");
   EXPECT_EQ(Choose("2").devices, (std::vector<int>{2}));
   EXPECT_EQ(Choose("2, 0").devices, (std::vector<int>{2, 0}));
   EXPECT_EQ(Choose("0,0").devices, (std::vector<int>{0, 0}));
@@ -51,7 +50,7 @@ TEST(Workers, AreThoseThatComputeWhatTheyShould) {
     return device == 0 ? "it is broken" : "";
   };
   EXPECT_EQ(ChooseWorkers(true, "-1", TwoGpus(), try_device).devices,
-            (std::vector<int>{2}));
+            (std::vector<int>{2, 2}));
   EXPECT_EQ(tried, (std::vector<int>{0, 2}));
   // Once each, and only those that are asked for.
   tried.clear();

@@ -37,7 +37,8 @@ class EmulatedGpu(tiny.TestCase):
         _, cpu_folder = self.stereo("cpu", CPU)
         result, gpu_folder = self.stereo("gpu", gpu("-1"))
         self.assert_success(result)
-        self.assertIn("Computing on GPU 0 (Emulated GPU).", result.stdout)
+        self.assertIn("Computing on GPU 0 (Emulated GPU), 0 (Emulated "
+                      "GPU).", result.stdout)
         for index, name in enumerate(self.names):
             right = []
             for folder in cpu_folder, gpu_folder:

@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <random>
 #include <string>
+#include <vector>
 
 #include "src/mvs/backend.h"
 #include "src/mvs/devices.h"
@@ -73,6 +74,38 @@ Estimate RunSweeps(Backend* backend, const Options& options, const Start& start,
     backend->Sweep(params, KeepGoing);
   }
   return backend->TakeResult();
+}
+
+// Costs after one sweep.
+std::vector<uint16_t> CostsAfterSweep(Backend* backend, const Options& options,
+                                      const Start& start) {
+  backend->SetEstimate(start.depth, start.normal, KeepGoing);
+  backend->Sweep(MakeSweepParams(options, 0), KeepGoing);
+  return backend->Costs();
+}
+
+// Sampled as precisely as on the CPU, costs are the same to 1e-3.
+TEST_F(CudaDeviceTest, HasTheCostsOfTheCpu) {
+  const SyntheticPlane scene = MakeScene(9);
+  const Problem problem = scene.GeometricProblem();
+  Options options = SweepOptions(true);
+  const Start start = StartNearTruth(scene);
+  const std::vector<uint16_t> expected =
+      CostsAfterSweep(MakeCpuBackend(options, problem).get(), options, start);
+  options.device = FirstDevice();
+  options.precise_textures = true;
+  const std::vector<uint16_t> actual =
+      CostsAfterSweep(MakeCudaBackend(options, problem).get(), options, start);
+  ASSERT_EQ(actual.size(), expected.size());
+  const int tolerance = EncodeCost(1e-3f) - EncodeCost(0);
+  size_t num_same = 0;
+  for (size_t i = 0; i < actual.size(); ++i) {
+    num_same += std::abs(actual[i] - expected[i]) <= tolerance;
+  }
+  const double same = static_cast<double>(num_same) / actual.size();
+  std::printf("the same costs: %.3f %%\n", 100 * same);
+  // Where another draw decides, the costs are those of another plane.
+  EXPECT_GE(same, 0.99);
 }
 
 // Share of the pixels where two estimates agree to the share `tolerance`.
