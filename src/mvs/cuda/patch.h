@@ -77,6 +77,8 @@ TAPA_INLINE Moments SumSamples(const WindowShape& window,
   const float skip = static_cast<float>(Lanes::kGroupSize * window.step);
   const Vec3 step = skip * warp.step_x;
   Moments moments = {0.0f, 0.0f, 0.0f};
+  // Windows behind a camera are rare: their code stays small.
+  TAPA_UNROLL((kInFront ? Sizes::kUnrolledRows : 1))
   for (int y = 0; y < row_samples; ++y) {
     Vec3 p = warp.At(
         static_cast<float>(Lanes::GroupLane() * window.step - window.radius),

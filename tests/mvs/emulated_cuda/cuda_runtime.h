@@ -61,7 +61,6 @@ cudaError_t cudaLaunchKernelEx(const cudaLaunchConfig_t* config,
 
 // Device functions, as exact as the device's.
 
-inline float __fdividef(float a, float b) { return a * (1.0f / b); }
 inline float __expf(float x) { return std::exp2(x * 1.44269504f); }
 
 inline void __syncthreads() { emulated_cuda::SyncBlock(); }
