@@ -110,8 +110,8 @@ TAPA_INLINE bool WindowIsInFront(const Warp& warp, float radius) {
   return warp.origin.z > radius * (fabsf(warp.step_x.z) + fabsf(warp.step_y.z));
 }
 
-// The source views as SweepPixel sees them, at one pixel. Cost() is called by a
-// group of lanes, everything else by single lanes.
+// The source views as SweepPixel sees them, at one pixel. Cost() is called by
+// all lanes together, everything else by single lanes.
 template <class Lanes, class Sizes, class Textures>
 class PixelSources {
  public:

@@ -211,9 +211,11 @@ TAPA_INLINE void InitializePixel(const SweepTask& task,
                                                      samples, patch, nullptr);
   const Vec3 h = HomographyVector(task.camera, Unpack(task.planes[pixel]),
                                   task.camera.Ray(row, col));
-  for (int m = Lanes::Group(); m < n; m += Lanes::kNumGroups) {
+  for (int first = 0; first < n; first += Lanes::kNumGroups) {
+    const GroupShare share = ShareOfGroup<Lanes>(first, n);
+    const int m = share.item;
     const float cost = sources.Cost(m, ComputeWarp(views, m, row, col, h));
-    if (Lanes::IsFirstOfGroup()) {
+    if (share.stores) {
       task.cost[pixel * n + m] = EncodeCost(cost);
       task.prob[pixel * n + m] = EncodeProb(0.5f);
     }

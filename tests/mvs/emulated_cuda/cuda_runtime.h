@@ -76,6 +76,11 @@ T __shfl_sync(unsigned mask, T value, int source) {
   std::memcpy(&value, &bits, sizeof(bits));
   return value;
 }
+template <typename T>
+T __shfl_xor_sync(unsigned mask, T value, int lane_mask) {
+  const int lane = threadIdx.x % emulated_cuda::kWarpSize;
+  return __shfl_sync(mask, value, lane ^ lane_mask);
+}
 
 template <typename T>
 T tex2D(cudaTextureObject_t object, float x, float y) {
