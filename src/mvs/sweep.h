@@ -56,6 +56,11 @@ struct SerialLanes {
   // How many hypotheses are measured side by side. Side by side they fill the
   // groups, one after the other each knows how good those before were.
   static constexpr int kNumSideBySide = 1;
+  // In how many views so many hypotheses are measured before those that cannot
+  // win any more drop out.
+  static constexpr TAPA_INLINE int NumViewsAtOnce(int /*num_hypotheses*/) {
+    return 1;
+  }
 };
 
 // What a group does of the kNumGroups items of a loop that come next.
@@ -418,12 +423,8 @@ TAPA_INLINE void SumCosts(const SweepParams& params, const RefCamera& camera,
     if (running.count == 0 || begin == num_distinct) {
       return;
     }
-    // As many views as it takes to keep all groups busy.
-    const int num_views = running.count < Lanes::kNumGroups
-                              ? Lanes::kNumGroups / running.count
-                              : 1;
-    const int end =
-        begin + num_views < num_distinct ? begin + num_views : num_distinct;
+    const int next = begin + Lanes::NumViewsAtOnce(running.count);
+    const int end = next < num_distinct ? next : num_distinct;
     MeasureCosts<Lanes>(views, sources, row, col, running, begin, end, s);
     for (int n = Lanes::First(); n < running.count; n += Lanes::Step()) {
       const int i = running.At(n);

@@ -61,6 +61,12 @@ struct WarpLanes {
   static constexpr int kGroupSize = 4;
   static constexpr int kNumGroups = kSize / kGroupSize;
   static constexpr int kNumSideBySide = kNumHypotheses - 1;
+  // 8, 4, 5, 2, 3, 4, 1: what leaves at most one group of the last round idle,
+  // four bits for each number of hypotheses from 1 on.
+  static TAPA_INLINE int NumViewsAtOnce(int num_hypotheses) {
+    static_assert(kNumGroups == 8 && kNumHypotheses <= 8, "made for that");
+    return 0x14325480u >> (4 * num_hypotheses) & 15u;
+  }
   static TAPA_INLINE int Group() { return First() / kGroupSize; }
   static TAPA_INLINE int GroupLane() { return First() % kGroupSize; }
   // Of every group its own, but by all of them together.
