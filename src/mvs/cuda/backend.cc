@@ -17,7 +17,7 @@
 namespace tapa {
 namespace {
 
-// Lines are shared out among streams: while the last warps of one end a piece,
+// Lines are shared out among streams: while the last warps of one end a launch,
 // those of others go on.
 constexpr int kNumStreams = 4;
 // Launches of a stream that wait in line while the host looks whether to go on.
@@ -203,13 +203,15 @@ class CudaBackend : public Backend {
       begin = Clock::now();
     }
     const int num_pieces = task_.NumPieces();
-    for (int piece = 0; piece < num_pieces; ++piece) {
+    const int per_launch = PiecesPerLaunch(launch_, task_);
+    for (int piece = 0; piece < num_pieces; piece += per_launch) {
+      const int end = std::min(num_pieces, piece + per_launch);
       ForStreams([&](int first, int last, const Stream& stream) {
-        LaunchSweepPiece(launch_, task_, textures_.objects(), piece, first,
-                         last, stream.get());
+        LaunchSweepPieces(launch_, task_, textures_.objects(), piece, end,
+                          first, last, stream.get());
       });
-      if (!GoOnAfter(piece, kNumStreams,
-                     static_cast<double>(piece + 1) / num_pieces, more)) {
+      if (!GoOnAfter(piece / per_launch, kNumStreams,
+                     static_cast<double>(end) / num_pieces, more)) {
         return false;
       }
     }

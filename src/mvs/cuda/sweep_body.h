@@ -194,6 +194,18 @@ TAPA_INLINE void SweepPiece(const SweepTask& task, const SourceCameras& views,
   }
 }
 
+// Sweeps pieces [begin, end) of a line.
+template <class Lanes, class Sizes, class Textures>
+TAPA_INLINE void SweepPieces(const SweepTask& task, const SourceCameras& views,
+                             const Textures& textures, int index, int begin,
+                             int end, float* words) {
+  for (int piece = begin; piece < end; ++piece) {
+    SweepPiece<Lanes, Sizes>(task, views, textures, index, piece, words);
+    // The next piece reads what this one left in the task.
+    Lanes::Sync();
+  }
+}
+
 // Computes the costs of a pixel's estimate, and sets its selection
 // probabilities to one half.
 template <class Lanes, class Sizes, class Textures>
