@@ -181,6 +181,10 @@ int DeviceAttribute(cudaDeviceAttr attribute) {
   return value;
 }
 
+int MaxSharedBytes() {
+  return DeviceAttribute(cudaDevAttrMaxSharedMemoryPerBlockOptin);
+}
+
 // As much as there is, whatever the problem: the limit is one for all threads
 // of the program, and others may be between two launches that need more.
 void AllowSharedBytes(const void* kernel) {
@@ -202,8 +206,7 @@ KernelLaunch::KernelLaunch(const SweepTask& task, KernelKind kind)
     num_warps /= 2;
   }
   shared_bytes = SharedBytes(task, kind, num_warps);
-  if (shared_bytes > static_cast<size_t>(DeviceAttribute(
-                         cudaDevAttrMaxSharedMemoryPerBlockOptin))) {
+  if (shared_bytes > static_cast<size_t>(MaxSharedBytes())) {
     throw DeviceError(
         "the window is too large, or there are too many source views, for the "
         "GPU's shared memory");
