@@ -10,6 +10,14 @@
 #define TAPA_INLINE inline __attribute__((always_inline))
 #endif
 
+// Before a loop: how many of its rounds a GPU's code has one after the other.
+#if defined(__CUDA_ARCH__)
+#define TAPA_PRAGMA(text) _Pragma(#text)
+#define TAPA_UNROLL(count) TAPA_PRAGMA(unroll count)
+#else
+#define TAPA_UNROLL(count)
+#endif
+
 // Whether this is code for a GPU, or for the one that tests emulate.
 #if defined(__CUDA_ARCH__) || defined(TAPA_EMULATED_CUDA)
 #define TAPA_ON_DEVICE

@@ -48,15 +48,36 @@ struct SerialLanes {
   }
 
   // Correlations are shared out, too: a group of lanes measures one at a time.
+  // All groups do so together, see ShareOfGroup.
   static constexpr int kGroupSize = 1;
   static constexpr int kNumGroups = 1;
   static constexpr TAPA_INLINE int Group() { return 0; }
   static constexpr TAPA_INLINE int GroupLane() { return 0; }
-  static constexpr TAPA_INLINE bool IsFirstOfGroup() { return true; }
   // How many hypotheses are measured side by side. Side by side they fill the
   // groups, one after the other each knows how good those before were.
   static constexpr int kNumSideBySide = 1;
+  // In how many views so many hypotheses are measured before those that cannot
+  // win any more drop out.
+  static constexpr TAPA_INLINE int NumViewsAtOnce(int /*num_hypotheses*/) {
+    return 1;
+  }
 };
+
+// What a group does of the kNumGroups items of a loop that come next.
+struct GroupShare {
+  int item;
+  // Whether this lane stores the result.
+  bool stores;
+};
+
+// A group for which none is left repeats the last one, so that all lanes go the
+// same way and sum across groups with one instruction.
+template <class Lanes>
+TAPA_INLINE GroupShare ShareOfGroup(int first, int count) {
+  const int item = first + Lanes::Group();
+  const bool is_mine = item < count;
+  return {is_mine ? item : count - 1, is_mine && Lanes::GroupLane() == 0};
+}
 
 // Parameters of one sweep.
 struct SweepParams {
@@ -351,16 +372,26 @@ TAPA_INLINE void MeasureCosts(const SourceCameras& views, Sources& sources,
                               float row, float col, const HypothesisList& list,
                               int begin, int end, PixelScratch* s) {
   const int count = list.count * (end - begin);
-  for (int n = Lanes::Group(); n < count; n += Lanes::kNumGroups) {
-    const int i = list.At(n % list.count);
-    const int m = s->order[begin + n / list.count];
+  for (int first = 0; first < count; first += Lanes::kNumGroups) {
+    const GroupShare share = ShareOfGroup<Lanes>(first, count);
+    const int i = list.At(share.item % list.count);
+    const int m = s->order[begin + share.item / list.count];
     const Warp warp = ComputeWarp(views, m, row, col, s->homography[i]);
     const float cost = DecodeCost(EncodeCost(sources.Cost(m, warp)));
-    if (Lanes::IsFirstOfGroup()) {
+    if (share.stores) {
       s->hypothesis_cost[i * s->stride + m] = cost;
     }
   }
   Lanes::Sync();
+}
+
+// Weights of the costs of a hypothesis. As values: what is behind a reference
+// that is chosen would have to lie in memory.
+TAPA_INLINE CostWeights WeightsOf(const TextureWeights& weights,
+                                  int hypothesis) {
+  const bool own = hypothesis < kFinePlane;
+  return {own ? weights.own.photometric : weights.planar.photometric,
+          own ? weights.own.geometric : weights.planar.geometric};
 }
 
 // Adds up, in s->sum, the costs of hypotheses [first, last) over the drawn
@@ -374,10 +405,10 @@ TAPA_INLINE void SumCosts(const SweepParams& params, const RefCamera& camera,
                           int last, const TextureWeights& weights, float limit,
                           int num_distinct, PixelScratch* s) {
   for (int i = first + Lanes::First(); i < last; i += Lanes::Step()) {
-    const CostWeights& w = i < kFinePlane ? weights.own : weights.planar;
     s->homography[i] = HomographyVector(camera, s->plane[i], ray);
     s->sum[i] = IsVisible(s->plane[i], ray)
-                    ? SumGeometricCosts(params, w, i, num_distinct, *s)
+                    ? SumGeometricCosts(params, WeightsOf(weights, i), i,
+                                        num_distinct, *s)
                     : INFINITY;
   }
   int begin = 0;
@@ -392,18 +423,14 @@ TAPA_INLINE void SumCosts(const SweepParams& params, const RefCamera& camera,
     if (running.count == 0 || begin == num_distinct) {
       return;
     }
-    // As many views as it takes to keep all groups busy.
-    const int num_views = running.count < Lanes::kNumGroups
-                              ? Lanes::kNumGroups / running.count
-                              : 1;
-    const int end =
-        begin + num_views < num_distinct ? begin + num_views : num_distinct;
+    const int next = begin + Lanes::NumViewsAtOnce(running.count);
+    const int end = next < num_distinct ? next : num_distinct;
     MeasureCosts<Lanes>(views, sources, row, col, running, begin, end, s);
     for (int n = Lanes::First(); n < running.count; n += Lanes::Step()) {
       const int i = running.At(n);
-      s->sum[i] = AddPhotometricCosts(
-          i < kFinePlane ? weights.own : weights.planar,
-          s->hypothesis_cost + i * s->stride, begin, end, s->sum[i], *s);
+      s->sum[i] = AddPhotometricCosts(WeightsOf(weights, i),
+                                      s->hypothesis_cost + i * s->stride, begin,
+                                      end, s->sum[i], *s);
     }
     begin = end;
   }

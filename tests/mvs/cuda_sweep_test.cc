@@ -211,6 +211,8 @@ TEST_P(CudaSweepTest, AgreesWithCpu) {
   ExpectAgrees(c, false, RunOnGpu(s, Kernel::kUsual, settings), expected);
   settings.exact_filtering = true;
   settings.turns = 9;
+  // Such that launches sweep two of three pieces, or all.
+  settings.kilohertz = 150000;
   ExpectAgrees(c, true, RunOnGpu(s, Kernel::kUsual, settings), expected);
   if (CommonSizes::Fits(WindowShape::FromOptions(s.options), c.num_sources)) {
     ExpectAgrees(c, true, RunOnGpu(s, Kernel::kNaive, settings), expected);
@@ -236,15 +238,17 @@ bool IsSame(const Outcome& a, const Outcome& b) {
          ShareOfSameChoices(a.estimate, b.estimate) == 1;
 }
 
-// Whatever the turns of threads, blocks and streams are.
+// Whatever the turns of threads, blocks and streams are, and however many
+// pieces a launch sweeps: one, two of three, all.
 TEST(CudaSweep, MissesNoSync) {
   const CudaScene s(CudaCase{"", true, true, 1, 6});
   for (const Kernel kernel :
        {Kernel::kUsual, Kernel::kPrecise, Kernel::kNaive}) {
     emulated_cuda::Settings settings;
     const Outcome expected = RunOnGpu(s, kernel, settings);
-    for (const uint32_t turns : {1, 77}) {
-      settings.turns = turns;
+    for (const int kilohertz : {100000, 150000, 1000000}) {
+      settings.turns = kilohertz / 1000 + 1;
+      settings.kilohertz = kilohertz;
       EXPECT_TRUE(IsSame(RunOnGpu(s, kernel, settings), expected));
     }
   }

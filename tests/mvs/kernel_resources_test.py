@@ -12,15 +12,15 @@ import sys
 # Kernel: (registers, bytes of stack, bytes of spills).
 LIMITS = {
     # Four blocks of 128 threads on a multiprocessor, 65536 registers.
-    "SweepPieceKernel": (128, 128, 64),
+    "SweepPiecesKernel": (128, 128, 64),
     "InitializeKernel": (128, 64, 0),
     "CheckpointKernel": (48, 0, 0),
     # The reference: its scratch is on the stack.
-    "NaiveSweepPieceKernel": (168, 4352, 64),
+    "NaiveSweepPiecesKernel": (168, 4352, 64),
 }
 # Instances of each for every architecture: more of them cost compile time.
-INSTANCES = {"SweepPieceKernel": 3, "InitializeKernel": 2,
-             "CheckpointKernel": 1, "NaiveSweepPieceKernel": 1}
+INSTANCES = {"SweepPiecesKernel": 3, "InitializeKernel": 2,
+             "CheckpointKernel": 1, "NaiveSweepPiecesKernel": 1}
 
 
 def read_report(path):

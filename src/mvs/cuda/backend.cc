@@ -17,13 +17,13 @@
 namespace tapa {
 namespace {
 
-// Lines are shared out among streams: while the last warps of one end a piece,
+// Lines are shared out among streams: while the last warps of one end a launch,
 // those of others go on.
 constexpr int kNumStreams = 4;
 // Launches of a stream that wait in line while the host looks whether to go on.
 constexpr int kQueueLength = 4;
-// Rows of a launch that computes first costs.
-constexpr int kRowsPerLaunch = 32;
+// Rows whose first costs are computed before the host looks whether to go on.
+constexpr int kRowsAtATime = 128;
 
 // The images of a problem as textures.
 class ProblemTextures {
@@ -172,13 +172,14 @@ class CudaBackend : public Backend {
     planes_.Upload(packed.data(), packed.size());
     is_downloaded_ = false;
     const Clock::time_point begin = Clock::now();
-    for (int row = 0; row < plan_.height; row += kRowsPerLaunch) {
-      const int end = std::min(plan_.height, row + kRowsPerLaunch);
-      LaunchInitialize(launch_, task_, textures_.objects(), row, end,
-                       streams_[0].get());
-      const int launch = row / kRowsPerLaunch;
-      if (!GoOnAfter(launch, 1, static_cast<double>(end) / plan_.height,
-                     more)) {
+    for (int row = 0; row < plan_.height; row += kRowsAtATime) {
+      const int end = std::min(plan_.height, row + kRowsAtATime);
+      ForStreams(row, end, [this](int first, int last, const Stream& stream) {
+        LaunchInitialize(launch_, task_, textures_.objects(), first, last,
+                         stream.get());
+      });
+      if (!GoOnAfter(row / kRowsAtATime,
+                     static_cast<double>(end) / plan_.height, more)) {
         return false;
       }
     }
@@ -194,7 +195,8 @@ class CudaBackend : public Backend {
     task_.params = params;
     has_support_ = params.filter;
     Clock::time_point begin = Clock::now();
-    ForStreams([this](int first, int last, const Stream& stream) {
+    const int num_lines = task_.NumLines();
+    ForStreams(0, num_lines, [this](int first, int last, const Stream& stream) {
       LaunchCheckpoints(task_, first, last, stream.get());
     });
     if (profile_ != nullptr) {
@@ -203,13 +205,15 @@ class CudaBackend : public Backend {
       begin = Clock::now();
     }
     const int num_pieces = task_.NumPieces();
-    for (int piece = 0; piece < num_pieces; ++piece) {
-      ForStreams([&](int first, int last, const Stream& stream) {
-        LaunchSweepPiece(launch_, task_, textures_.objects(), piece, first,
-                         last, stream.get());
+    const int per_launch = PiecesPerLaunch(launch_, task_);
+    for (int piece = 0; piece < num_pieces; piece += per_launch) {
+      const int end = std::min(num_pieces, piece + per_launch);
+      ForStreams(0, num_lines, [&](int first, int last, const Stream& stream) {
+        LaunchSweepPieces(launch_, task_, textures_.objects(), piece, end,
+                          first, last, stream.get());
       });
-      if (!GoOnAfter(piece, kNumStreams,
-                     static_cast<double>(piece + 1) / num_pieces, more)) {
+      if (!GoOnAfter(piece / per_launch, static_cast<double>(end) / num_pieces,
+                     more)) {
         return false;
       }
     }
@@ -298,25 +302,26 @@ class CudaBackend : public Backend {
     cameras_.Upload(coefficients.data(), coefficients.size());
   }
 
-  // Calls run(first line, last line, stream) for the lines of every stream.
+  // Calls run(first line, last line, stream) for every stream's share of lines
+  // [begin, end).
   template <class Run>
-  void ForStreams(const Run& run) {
-    const int num_lines = task_.NumLines();
+  void ForStreams(int begin, int end, const Run& run) {
+    const int count = end - begin;
     for (int i = 0; i < kNumStreams; ++i) {
-      const int begin = num_lines * i / kNumStreams;
-      const int end = num_lines * (i + 1) / kNumStreams;
-      if (begin < end) {
-        run(begin, end, streams_[i]);
+      const int first = begin + count * i / kNumStreams;
+      const int last = begin + count * (i + 1) / kNumStreams;
+      if (first < last) {
+        run(first, last, streams_[i]);
       }
     }
   }
 
-  // After launch number `launch` of the first num_streams streams: waits for
-  // those kQueueLength launches before, while the device goes on with the
-  // others, and asks whether to go on.
-  bool GoOnAfter(int launch, int num_streams, double done, const More& more) {
+  // After launch number `launch` of all streams: waits for those kQueueLength
+  // launches before, while the device goes on with the others, and asks whether
+  // to go on.
+  bool GoOnAfter(int launch, double done, const More& more) {
     const int slot = launch % kQueueLength;
-    for (int i = 0; i < num_streams; ++i) {
+    for (int i = 0; i < kNumStreams; ++i) {
       events_[(slot + 1) % kQueueLength][i].Wait();
       events_[slot][i].Record(streams_[i]);
     }

@@ -1,5 +1,7 @@
 #include <cuda_runtime.h>
 
+#include <algorithm>
+
 #include "src/mvs/cuda/device_textures.h"
 #include "src/mvs/cuda/kernels.h"
 #include "src/mvs/cuda/lanes.h"
@@ -56,15 +58,15 @@ __device__ __forceinline__ float* WarpScratch(const SweepTask& task,
 
 template <class Sizes, bool kPrecise>
 __global__ void __launch_bounds__(kBlockThreads, kMinBlocks)
-    SweepPieceKernel(const __grid_constant__ SweepTask task,
-                     const __grid_constant__ TextureObjects objects, int piece,
-                     int begin, int end) {
+    SweepPiecesKernel(const __grid_constant__ SweepTask task,
+                      const __grid_constant__ TextureObjects objects,
+                      int begin_piece, int end_piece, int begin, int end) {
   const SourceCameras views = LoadCameras<Sizes>(task, shared_words);
   const int line = begin + (blockIdx.x * blockDim.x + threadIdx.x) / kWarpSize;
   if (line < end) {
-    SweepPiece<WarpLanes, Sizes>(task, views, DeviceTextures<kPrecise>(objects),
-                                 line, piece,
-                                 WarpScratch<Sizes>(task, shared_words));
+    SweepPieces<WarpLanes, Sizes>(
+        task, views, DeviceTextures<kPrecise>(objects), line, begin_piece,
+        end_piece, WarpScratch<Sizes>(task, shared_words));
   }
 }
 
@@ -94,10 +96,10 @@ __global__ void CheckpointKernel(const __grid_constant__ SweepTask task,
 }
 
 // The reference: a thread does everything for its line.
-__global__ void NaiveSweepPieceKernel(const __grid_constant__ SweepTask task,
-                                      const __grid_constant__ TextureObjects
-                                          objects,
-                                      int piece, int begin, int end) {
+__global__ void NaiveSweepPiecesKernel(
+    const __grid_constant__ SweepTask task,
+    const __grid_constant__ TextureObjects objects, int begin_piece,
+    int end_piece, int begin, int end) {
   const SourceCameras views = LoadCameras<CommonSizes>(task, shared_words);
   constexpr int kWords =
       kViewArrays * CommonSizes::kMaxViews + kPaddedFixedWords +
@@ -105,27 +107,28 @@ __global__ void NaiveSweepPieceKernel(const __grid_constant__ SweepTask task,
   __align__(8) float words[kWords];
   const int line = begin + blockIdx.x * blockDim.x + threadIdx.x;
   if (line < end) {
-    SweepPiece<SerialLanes, CommonSizes>(
-        task, views, DeviceTextures<false>(objects), line, piece, words);
+    SweepPieces<SerialLanes, CommonSizes>(task, views,
+                                          DeviceTextures<false>(objects), line,
+                                          begin_piece, end_piece, words);
   }
 }
 
-using SweepKernel = void (*)(SweepTask, TextureObjects, int, int, int);
+using SweepKernel = void (*)(SweepTask, TextureObjects, int, int, int, int);
 using InitializeKernelPointer = void (*)(SweepTask, TextureObjects, size_t,
                                          size_t);
 
 SweepKernel SweepKernelOf(KernelKind kind) {
   switch (kind) {
     case KernelKind::kCommon:
-      return SweepPieceKernel<CommonSizes, false>;
+      return SweepPiecesKernel<CommonSizes, false>;
     case KernelKind::kAny:
-      return SweepPieceKernel<AnySizes, false>;
+      return SweepPiecesKernel<AnySizes, false>;
     case KernelKind::kPrecise:
-      return SweepPieceKernel<AnySizes, true>;
+      return SweepPiecesKernel<AnySizes, true>;
     case KernelKind::kNaive:
       break;
   }
-  return NaiveSweepPieceKernel;
+  return NaiveSweepPiecesKernel;
 }
 
 // Once per estimation, so that one size will do.
@@ -169,14 +172,17 @@ size_t SharedBytes(const SweepTask& task, KernelKind kind, int num_warps) {
   return (cameras + static_cast<size_t>(num_warps) * scratch) * sizeof(float);
 }
 
-int MaxSharedBytes() {
+int DeviceAttribute(cudaDeviceAttr attribute) {
   int device = 0;
-  int bytes = 0;
+  int value = 0;
   CheckCuda(cudaGetDevice(&device), "asking for the GPU");
-  CheckCuda(cudaDeviceGetAttribute(
-                &bytes, cudaDevAttrMaxSharedMemoryPerBlockOptin, device),
-            "asking for the GPU's shared memory");
-  return bytes;
+  CheckCuda(cudaDeviceGetAttribute(&value, attribute, device),
+            "asking for the GPU's properties");
+  return value;
+}
+
+int MaxSharedBytes() {
+  return DeviceAttribute(cudaDevAttrMaxSharedMemoryPerBlockOptin);
 }
 
 // As much as there is, whatever the problem: the limit is one for all threads
@@ -236,13 +242,32 @@ void LaunchCheckpoints(const SweepTask& task, int begin, int end,
          task, begin, end);
 }
 
-void LaunchSweepPiece(const KernelLaunch& launch, const SweepTask& task,
-                      const TextureObjects& textures, int piece, int begin,
-                      int end, cudaStream_t stream) {
+int PiecesPerLaunch(const KernelLaunch& launch, const SweepTask& task) {
+  constexpr double kSeconds = 0.04;
+  // An estimate: what a pixel takes beside correlations counts as some more.
+  constexpr double kCorrelationsPerPixel = 40;
+  // A quarter of what texture units can do.
+  constexpr double kSamplesPerCycle = 1;
+  if (launch.kind == KernelKind::kNaive) {
+    return 1;
+  }
+  const double samples_per_second =
+      kSamplesPerCycle * 1e3 * DeviceAttribute(cudaDevAttrClockRate) *
+      DeviceAttribute(cudaDevAttrMultiProcessorCount);
+  const double samples_per_piece =
+      kCorrelationsPerPixel * task.window.row_samples *
+      task.window.row_samples * task.piece_length * task.NumLines();
+  const double pieces = kSeconds * samples_per_second / samples_per_piece;
+  return static_cast<int>(std::clamp<double>(pieces, 1, task.NumPieces()));
+}
+
+void LaunchSweepPieces(const KernelLaunch& launch, const SweepTask& task,
+                       const TextureObjects& textures, int begin_piece,
+                       int end_piece, int begin, int end, cudaStream_t stream) {
   Launch(SweepKernelOf(launch.kind),
          {NumBlocks(end - begin, launch.lines_per_block), launch.block_threads,
           launch.shared_bytes, stream, "sweeping on the GPU"},
-         task, textures, piece, begin, end);
+         task, textures, begin_piece, end_piece, begin, end);
 }
 
 KernelResources SweepResources(const KernelLaunch& launch) {

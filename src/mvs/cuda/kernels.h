@@ -55,10 +55,15 @@ void LaunchInitialize(const KernelLaunch& launch, const SweepTask& task,
 void LaunchCheckpoints(const SweepTask& task, int begin, int end,
                        cudaStream_t stream);
 
-// A piece of lines [begin, end).
-void LaunchSweepPiece(const KernelLaunch& launch, const SweepTask& task,
-                      const TextureObjects& textures, int piece, int begin,
-                      int end, cudaStream_t stream);
+// Pieces [begin_piece, end_piece) of lines [begin, end).
+void LaunchSweepPieces(const KernelLaunch& launch, const SweepTask& task,
+                       const TextureObjects& textures, int begin_piece,
+                       int end_piece, int begin, int end, cudaStream_t stream);
+
+// How many pieces the current device sweeps in about 40 ms, at least one: at
+// the end of a launch warps wait for the slowest, while a device that also
+// shows a screen must not be busy for long, nor one that is asked to stop.
+int PiecesPerLaunch(const KernelLaunch& launch, const SweepTask& task);
 
 // What the sweep's kernel takes on the current device.
 struct KernelResources {

@@ -45,14 +45,14 @@ struct WarpLanes {
       float sum = i < count ? values[i] : 0.0f;
       for (int distance = 1; distance < kSize; distance *= 2) {
         const int source = First() - distance;
-        const float other = Shuffle<kSize>(sum, source < 0 ? First() : source);
+        const float other = FromLane(sum, source < 0 ? First() : source);
         sum += source < 0 ? 0.0f : other;
       }
       sum += before;
       if (i < count) {
         values[i] = sum;
       }
-      before = Shuffle<kSize>(sum, kSize - 1);
+      before = FromLane(sum, kSize - 1);
     }
     Sync();
     return before;
@@ -61,32 +61,38 @@ struct WarpLanes {
   static constexpr int kGroupSize = 4;
   static constexpr int kNumGroups = kSize / kGroupSize;
   static constexpr int kNumSideBySide = kNumHypotheses - 1;
+  // 8, 4, 5, 2, 3, 4, 1: what leaves at most one group of the last round idle,
+  // four bits for each number of hypotheses from 1 on.
+  static TAPA_INLINE int NumViewsAtOnce(int num_hypotheses) {
+    static_assert(kNumGroups == 8 && kNumHypotheses <= 8, "made for that");
+    return 0x14325480u >> (4 * num_hypotheses) & 15u;
+  }
   static TAPA_INLINE int Group() { return First() / kGroupSize; }
   static TAPA_INLINE int GroupLane() { return First() % kGroupSize; }
-  static TAPA_INLINE bool IsFirstOfGroup() { return GroupLane() == 0; }
+  // Of every group its own, but by all of them together.
   static TAPA_INLINE float GroupSum(float value) {
     return SumOf<kGroupSize>(value);
   }
 
  private:
-  // What lane `source` of the same group gives.
-  template <int kGroup>
-  static TAPA_INLINE float Shuffle(float value, int source) {
+  static constexpr unsigned kAllLanes = 0xFFFFFFFFu;
+
+  // What another lane gives.
+  static TAPA_INLINE float FromLane(float value, int lane) {
 #if defined(TAPA_ON_DEVICE)
-    // Other groups may be elsewhere.
-    constexpr unsigned kLanes = 0xFFFFFFFFu >> (kSize - kGroup);
-    const unsigned mask = kLanes << (First() / kGroup * kGroup);
-    return __shfl_sync(mask, value, source);
+    return __shfl_sync(kAllLanes, value, lane);
 #else
-    return source == 0 ? value : 0.0f;
+    return lane == 0 ? value : 0.0f;
 #endif
   }
 
   template <int kGroup>
   static TAPA_INLINE float SumOf(float value) {
+#if defined(TAPA_ON_DEVICE)
     for (int distance = kGroup / 2; distance > 0; distance /= 2) {
-      value += Shuffle<kGroup>(value, First() ^ distance);
+      value += __shfl_xor_sync(kAllLanes, value, distance);
     }
+#endif
     return value;
   }
 };

@@ -30,6 +30,7 @@ struct WindowShape {
 struct CommonSizes {
   static constexpr int kMaxViews = 32;
   static constexpr int kRowSamples = 11;
+  static constexpr int kUnrolledRows = kRowSamples;
   static TAPA_INLINE int RowSamples(const WindowShape&) { return kRowSamples; }
   static TAPA_INLINE int Stride(int /*num_views*/) { return kMaxViews; }
   static bool Fits(const WindowShape& window, int num_views) {
@@ -39,6 +40,7 @@ struct CommonSizes {
 
 // All others.
 struct AnySizes {
+  static constexpr int kUnrolledRows = 1;
   static TAPA_INLINE int RowSamples(const WindowShape& window) {
     return window.row_samples;
   }

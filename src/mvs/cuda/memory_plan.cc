@@ -9,7 +9,7 @@
 namespace tapa {
 namespace {
 
-// A piece takes at least some time, so that launches do not wait for the host.
+// A launch sweeps at least a piece, which is to take longer than to launch it.
 constexpr int kMinPieceLength = 16;
 
 }  // namespace

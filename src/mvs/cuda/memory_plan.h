@@ -23,9 +23,8 @@ struct MemoryPlan {
   int max_source_height = 0;
   bool geometric = false;
   bool tapa = false;
-  // Pixels of a line that a launch sweeps. The backward messages that have to
-  // be kept, those of a piece and one per piece, are fewest at the square root
-  // of a line's length.
+  // Pixels of a line whose backward messages are kept. With the one per piece
+  // that is kept too, they are fewest at the square root of a line's length.
   int piece_length = 0;
 
   size_t pixels = 0;

@@ -77,6 +77,8 @@ TAPA_INLINE Moments SumSamples(const WindowShape& window,
   const float skip = static_cast<float>(Lanes::kGroupSize * window.step);
   const Vec3 step = skip * warp.step_x;
   Moments moments = {0.0f, 0.0f, 0.0f};
+  // Windows behind a camera are rare: their code stays small.
+  TAPA_UNROLL((kInFront ? Sizes::kUnrolledRows : 1))
   for (int y = 0; y < row_samples; ++y) {
     Vec3 p = warp.At(
         static_cast<float>(Lanes::GroupLane() * window.step - window.radius),
@@ -108,8 +110,8 @@ TAPA_INLINE bool WindowIsInFront(const Warp& warp, float radius) {
   return warp.origin.z > radius * (fabsf(warp.step_x.z) + fabsf(warp.step_y.z));
 }
 
-// The source views as SweepPixel sees them, at one pixel. Cost() is called by a
-// group of lanes, everything else by single lanes.
+// The source views as SweepPixel sees them, at one pixel. Cost() is called by
+// all lanes together, everything else by single lanes.
 template <class Lanes, class Sizes, class Textures>
 class PixelSources {
  public:

@@ -194,6 +194,18 @@ TAPA_INLINE void SweepPiece(const SweepTask& task, const SourceCameras& views,
   }
 }
 
+// Sweeps pieces [begin, end) of a line.
+template <class Lanes, class Sizes, class Textures>
+TAPA_INLINE void SweepPieces(const SweepTask& task, const SourceCameras& views,
+                             const Textures& textures, int index, int begin,
+                             int end, float* words) {
+  for (int piece = begin; piece < end; ++piece) {
+    SweepPiece<Lanes, Sizes>(task, views, textures, index, piece, words);
+    // The next piece reads what this one left in the task.
+    Lanes::Sync();
+  }
+}
+
 // Computes the costs of a pixel's estimate, and sets its selection
 // probabilities to one half.
 template <class Lanes, class Sizes, class Textures>
@@ -211,9 +223,11 @@ TAPA_INLINE void InitializePixel(const SweepTask& task,
                                                      samples, patch, nullptr);
   const Vec3 h = HomographyVector(task.camera, Unpack(task.planes[pixel]),
                                   task.camera.Ray(row, col));
-  for (int m = Lanes::Group(); m < n; m += Lanes::kNumGroups) {
+  for (int first = 0; first < n; first += Lanes::kNumGroups) {
+    const GroupShare share = ShareOfGroup<Lanes>(first, n);
+    const int m = share.item;
     const float cost = sources.Cost(m, ComputeWarp(views, m, row, col, h));
-    if (Lanes::IsFirstOfGroup()) {
+    if (share.stores) {
       task.cost[pixel * n + m] = EncodeCost(cost);
       task.prob[pixel * n + m] = EncodeProb(0.5f);
     }

@@ -84,8 +84,9 @@ struct SweepTask {
   PlaneTable coarse;
 
   SweepParams params;
-  // Lines are swept in pieces of this many pixels, so that launches are short
-  // and that the backward messages of a piece are all that has to be kept.
+  // Lines are swept in pieces of this many pixels, so that launches can be
+  // short and that the backward messages of a piece are all that has to be
+  // kept.
   int piece_length = 0;
   // At [(piece * lines + line) * n + m]: the message to the last pixel of the
   // piece from the pixel after it. Not set for a line's last piece.

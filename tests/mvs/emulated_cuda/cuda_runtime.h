@@ -61,7 +61,6 @@ cudaError_t cudaLaunchKernelEx(const cudaLaunchConfig_t* config,
 
 // Device functions, as exact as the device's.
 
-inline float __fdividef(float a, float b) { return a * (1.0f / b); }
 inline float __expf(float x) { return std::exp2(x * 1.44269504f); }
 
 inline void __syncthreads() { emulated_cuda::SyncBlock(); }
@@ -76,6 +75,11 @@ T __shfl_sync(unsigned mask, T value, int source) {
   bits = emulated_cuda::Shuffle(mask, bits, source);
   std::memcpy(&value, &bits, sizeof(bits));
   return value;
+}
+template <typename T>
+T __shfl_xor_sync(unsigned mask, T value, int lane_mask) {
+  const int lane = threadIdx.x % emulated_cuda::kWarpSize;
+  return __shfl_sync(mask, value, lane ^ lane_mask);
 }
 
 template <typename T>

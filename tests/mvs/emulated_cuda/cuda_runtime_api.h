@@ -34,6 +34,7 @@ struct cudaDeviceProp {
 };
 enum cudaDeviceAttr {
   cudaDevAttrClockRate,
+  cudaDevAttrMultiProcessorCount,
   cudaDevAttrMaxSharedMemoryPerBlockOptin,
 };
 cudaError_t cudaGetDeviceCount(int* count);

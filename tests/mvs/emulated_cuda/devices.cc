@@ -73,9 +73,10 @@ cudaError_t cudaGetDeviceProperties(cudaDeviceProp* properties, int device) {
 }
 
 cudaError_t cudaDeviceGetAttribute(int* value, cudaDeviceAttr attribute, int) {
-  return Call([&](State*) {
-    *value = attribute == cudaDevAttrClockRate
-                 ? 1000000
+  return Call([&](State* state) {
+    *value = attribute == cudaDevAttrClockRate ? state->settings.kilohertz
+             : attribute == cudaDevAttrMultiProcessorCount
+                 ? 1
                  : int{emulated_cuda::kMaxSharedBytes};
     return cudaSuccess;
   });

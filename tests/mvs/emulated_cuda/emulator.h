@@ -26,6 +26,8 @@ struct Settings {
   // Key of the order in which threads, blocks and streams take turns; 0:
   // ascending, and as late as can be.
   uint32_t turns = 0;
+  // What it says of its clock. As slow as this, little is done in one launch.
+  int kilohertz = 100000;
   // Whether textures filter precisely, not with fractions of 8 bits.
   bool exact_filtering = false;
   // As if the device computed wrong: textures are black.
