@@ -23,6 +23,7 @@ constexpr int kWarpSize = WarpLanes::kSize;
 constexpr int kWarpsPerBlock = 4;
 constexpr int kBlockThreads = kWarpsPerBlock * kWarpSize;
 // 16 warps per multiprocessor: a texture unit needs about so many to be busy.
+// Turing has shared memory for 12.
 constexpr int kMinBlocks = 4;
 // As COLMAP's kernel has.
 constexpr int kNaiveBlockThreads = 32;
