@@ -19,7 +19,7 @@ LIMITS = {
     "NaiveSweepPiecesKernel": (168, 4352, 64),
 }
 # Instances of each for every architecture: more of them cost compile time.
-INSTANCES = {"SweepPiecesKernel": 3, "InitializeKernel": 2,
+INSTANCES = {"SweepPiecesKernel": 3, "InitializeKernel": 3,
              "CheckpointKernel": 1, "NaiveSweepPiecesKernel": 1}
 
 

@@ -132,10 +132,15 @@ SweepKernel SweepKernelOf(KernelKind kind) {
   return NaiveSweepPiecesKernel;
 }
 
-// Once per estimation, so that one size will do.
 InitializeKernelPointer InitializeKernelOf(KernelKind kind) {
-  return kind == KernelKind::kPrecise ? InitializeKernel<AnySizes, true>
-                                      : InitializeKernel<AnySizes, false>;
+  switch (kind) {
+    case KernelKind::kAny:
+      return InitializeKernel<AnySizes, false>;
+    case KernelKind::kPrecise:
+      return InitializeKernel<AnySizes, true>;
+    default:
+      return InitializeKernel<CommonSizes, false>;
+  }
 }
 
 // How many threads run a kernel, and where. what: for messages.
@@ -222,16 +227,16 @@ void LaunchInitialize(const KernelLaunch& launch, const SweepTask& task,
                       cudaStream_t stream) {
   const size_t first = task.Pixel(begin, 0);
   const size_t last = task.Pixel(end, 0);
-  const KernelKind kind = launch.kind == KernelKind::kPrecise
-                              ? KernelKind::kPrecise
-                              : KernelKind::kAny;
-  const KernelLaunch any(task, kind);
-  const InitializeKernelPointer kernel = InitializeKernelOf(kind);
+  // The naive kernel is one for sweeps only.
+  const KernelLaunch usual(task, launch.kind == KernelKind::kNaive
+                                     ? KernelKind::kCommon
+                                     : launch.kind);
+  const InitializeKernelPointer kernel = InitializeKernelOf(usual.kind);
   AllowSharedBytes(reinterpret_cast<const void*>(kernel));
-  const size_t pixels_per_block = any.lines_per_block * kPixelsPerWarp;
+  const size_t pixels_per_block = usual.lines_per_block * kPixelsPerWarp;
   Launch(kernel,
-         {NumBlocks(last - first, pixels_per_block), any.block_threads,
-          any.shared_bytes, stream, "computing first costs on the GPU"},
+         {NumBlocks(last - first, pixels_per_block), usual.block_threads,
+          usual.shared_bytes, stream, "computing first costs on the GPU"},
          task, textures, first, last);
 }
 
