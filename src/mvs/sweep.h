@@ -181,7 +181,8 @@ struct PixelScratch {
   float* sum;
   // Elements between the arrays of two hypotheses below.
   int stride;
-  // Photometric costs at [hypothesis * stride + view], where measured.
+  // Photometric costs at [hypothesis * stride + view], where measured. Not of
+  // kCurrent: they are in `cost`.
   float* hypothesis_cost;
   // Geometric costs of the distinct depths at [DepthIndex * stride + view].
   float* geom_cost;

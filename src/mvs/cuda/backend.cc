@@ -274,6 +274,7 @@ class CudaBackend : public Backend {
     task.width = plan_.width;
     task.height = plan_.height;
     task.num_views = plan_.num_views;
+    task.geometric = plan_.geometric;
     task.window = WindowShape::FromOptions(options);
     task.camera = CameraTable(problem).reference();
     task.cameras = cameras_.data();

@@ -23,7 +23,7 @@ constexpr int kWarpSize = WarpLanes::kSize;
 constexpr int kWarpsPerBlock = 4;
 constexpr int kBlockThreads = kWarpsPerBlock * kWarpSize;
 // 16 warps per multiprocessor: a texture unit needs about so many to be busy.
-// Turing has shared memory for 12.
+// Turing has shared memory for 12 in the geometric pass.
 constexpr int kMinBlocks = 4;
 // As COLMAP's kernel has.
 constexpr int kNaiveBlockThreads = 32;
@@ -54,7 +54,8 @@ __device__ __forceinline__ float* WarpScratch(const SweepTask& task,
                                               float* shared) {
   return shared + CameraWords<Sizes>(task) +
          threadIdx.x / kWarpSize *
-             ScratchWords<WarpLanes, Sizes>(task.window, task.num_views);
+             ScratchWords<WarpLanes, Sizes>(task.window, task.num_views,
+                                            task.geometric);
 }
 
 template <class Sizes, bool kPrecise>
@@ -103,7 +104,8 @@ __global__ void NaiveSweepPiecesKernel(
     int end_piece, int begin, int end) {
   const SourceCameras views = LoadCameras<CommonSizes>(task, shared_words);
   constexpr int kWords =
-      kViewArrays * CommonSizes::kMaxViews + kPaddedFixedWords +
+      (kViewArrays + kGeometricArrays) * CommonSizes::kMaxViews +
+      kPaddedFixedWords +
       2 * CommonSizes::kRowSamples * CommonSizes::kRowSamples;
   __align__(8) float words[kWords];
   const int line = begin + blockIdx.x * blockDim.x + threadIdx.x;
@@ -170,11 +172,12 @@ size_t SharedBytes(const SweepTask& task, KernelKind kind, int num_warps) {
   const bool common = kind == KernelKind::kCommon || kind == KernelKind::kNaive;
   const int cameras =
       common ? CameraWords<CommonSizes>(task) : CameraWords<AnySizes>(task);
-  const int scratch =
-      kind == KernelKind::kNaive ? 0
-      : common
-          ? ScratchWords<WarpLanes, CommonSizes>(task.window, task.num_views)
-          : ScratchWords<WarpLanes, AnySizes>(task.window, task.num_views);
+  const int scratch = kind == KernelKind::kNaive ? 0
+                      : common
+                          ? ScratchWords<WarpLanes, CommonSizes>(
+                                task.window, task.num_views, task.geometric)
+                          : ScratchWords<WarpLanes, AnySizes>(
+                                task.window, task.num_views, task.geometric);
   return (cameras + static_cast<size_t>(num_warps) * scratch) * sizeof(float);
 }
 

@@ -62,8 +62,11 @@ TAPA_INLINE int PatchStride(int row_samples) {
 }
 
 // The working memory of one pixel, in 4-byte words: the arrays of PixelScratch
-// and the patch.
-constexpr int kViewArrays = 9 + kNumHypotheses + kNumDepths;
+// over the views and its others, the patch, and last those arrays over the
+// views that only the geometric pass uses. It is kept small because the texture
+// units' cache gets what blocks do not share.
+constexpr int kViewArrays = 6 + kNumHypotheses - 1;
+constexpr int kGeometricArrays = 3 + kNumDepths;
 constexpr int kPlaneWords = sizeof(Plane) / 4;
 constexpr int kVec3Words = sizeof(Vec3) / 4;
 constexpr int kFixedWords =
@@ -71,17 +74,26 @@ constexpr int kFixedWords =
 // Keeps what follows, pairs of words, aligned.
 constexpr int kPaddedFixedWords = (kFixedWords + 1) / 2 * 2;
 
+// Of all but the geometric pass' arrays.
 template <class Lanes, class Sizes>
-TAPA_INLINE int ScratchWords(const WindowShape& window, int num_views) {
+TAPA_INLINE int CommonScratchWords(const WindowShape& window, int num_views) {
   const int row_samples = Sizes::RowSamples(window);
   return kViewArrays * Sizes::Stride(num_views) + kPaddedFixedWords +
          2 * row_samples * PatchStride<Lanes>(row_samples);
 }
 
+template <class Lanes, class Sizes>
+TAPA_INLINE int ScratchWords(const WindowShape& window, int num_views,
+                             bool geometric) {
+  return CommonScratchWords<Lanes, Sizes>(window, num_views) +
+         (geometric ? kGeometricArrays * Sizes::Stride(num_views) : 0);
+}
+
 // Lays out the scratch in `words`, which are aligned to 8 bytes. backward
 // stays unset.
-template <class Sizes>
-TAPA_INLINE PixelScratch ArrangeScratch(int num_views, float* words,
+template <class Lanes, class Sizes>
+TAPA_INLINE PixelScratch ArrangeScratch(const WindowShape& window,
+                                        int num_views, float* words,
                                         PatchSample** patch) {
   const int stride = Sizes::Stride(num_views);
   PixelScratch s;
@@ -90,11 +102,10 @@ TAPA_INLINE PixelScratch ArrangeScratch(int num_views, float* words,
   s.forward = words + 2 * stride;
   s.cdf = words + 3 * stride;
   s.num_drawn = words + 4 * stride;
-  s.source_depth = words + 5 * stride;
-  s.order = reinterpret_cast<int*>(words + 6 * stride);
-  s.projection = reinterpret_cast<Projection*>(words + 7 * stride);
-  s.hypothesis_cost = words + 9 * stride;
-  s.geom_cost = words + (9 + kNumHypotheses) * stride;
+  s.order = reinterpret_cast<int*>(words + 5 * stride);
+  // The current estimate, hypothesis 0, has its costs in `cost`.
+  static_assert(kCurrent == 0, "");
+  s.hypothesis_cost = words + (6 - 1) * stride;
   s.stride = stride;
   float* fixed = words + kViewArrays * stride;
   s.uniform = fixed;
@@ -103,6 +114,11 @@ TAPA_INLINE PixelScratch ArrangeScratch(int num_views, float* words,
   s.homography =
       reinterpret_cast<Vec3*>(s.sum + (1 + kPlaneWords) * kNumHypotheses);
   *patch = reinterpret_cast<PatchSample*>(fixed + kPaddedFixedWords);
+  float* geometric =
+      words + CommonScratchWords<Lanes, Sizes>(window, num_views);
+  s.projection = reinterpret_cast<Projection*>(geometric);
+  s.source_depth = geometric + 2 * stride;
+  s.geom_cost = geometric + 3 * stride;
   s.backward = nullptr;
   return s;
 }

@@ -162,7 +162,8 @@ TAPA_INLINE void SweepPiece(const SweepTask& task, const SourceCameras& views,
   ComputeBackwardMessages<Lanes>(task, line, index, begin, end);
 
   PatchSample* samples;
-  PixelScratch s = ArrangeScratch<Sizes>(n, words, &samples);
+  PixelScratch s =
+      ArrangeScratch<Lanes, Sizes>(task.window, n, words, &samples);
   float* const forward = task.forward + static_cast<size_t>(index) * n;
   for (int m = Lanes::First(); m < n; m += Lanes::Step()) {
     s.forward[m] = begin == 0 ? ViewSelection::kBorderMessage : forward[m];
@@ -216,7 +217,7 @@ TAPA_INLINE void InitializePixel(const SweepTask& task,
   const size_t pixel = task.Pixel(row, col);
   const int n = task.num_views;
   PatchSample* samples;
-  ArrangeScratch<Sizes>(n, words, &samples);
+  ArrangeScratch<Lanes, Sizes>(task.window, n, words, &samples);
   const PatchStatistics patch =
       LoadPatch<Lanes, Sizes>(task.window, textures, row, col, samples);
   const PixelSources<Lanes, Sizes, Textures> sources(task.window, textures,

@@ -62,6 +62,8 @@ struct SweepTask {
   int width = 0;
   int height = 0;
   int num_views = 0;
+  // Whether this is the geometric pass, as in the parameters of all its sweeps.
+  bool geometric = false;
   WindowShape window;
   RefCamera camera;
   // The coefficients of SourceCameras, n of each.
