@@ -57,7 +57,10 @@ void PatchMatchController::Run() {
     const tapa::Workers workers = tapa::ChooseWorkers(
         options_.use_gpu, options_.gpu_index, tapa::FindDevices(),
         [&](int device) {
-          return tapa::TryDevice(device, tapa::EngineOptions(options_));
+          std::cout << "Trying GPU " << device << " with a small test ..."
+                    << std::endl;
+          return tapa::TryDevice(device, tapa::EngineOptions(options_),
+                                 stopped);
         });
     if (!workers.message.empty()) {
       std::cout << workers.message << std::endl;

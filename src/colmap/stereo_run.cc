@@ -410,7 +410,11 @@ bool StereoRun::ComputePass(Pass pass, const std::function<bool()>& stopped) {
   std::exception_ptr error;
   const auto work = [&](int device) {
     const auto halt = [&] { return halted || stopped(); };
-    for (size_t i = next++; i < problems_.size() && !halted; i = next++) {
+    while (!halted && !LeavesViewsToOthers(device)) {
+      const size_t i = next++;
+      if (i >= problems_.size()) {
+        break;
+      }
       try {
         if (halt() || !ComputeNumberedView(i, pass, device, halt)) {
           halted = true;
@@ -435,6 +439,8 @@ bool StereoRun::ComputePass(Pass pass, const std::function<bool()>& stopped) {
   for (std::thread& other : others) {
     other.join();
   }
+  // What was left to others that did not come to it.
+  work(kCpu);
   if (halted) {
     progress_->ClearLine();
   }
@@ -519,6 +525,21 @@ bool StereoRun::IsLost(int device) {
   return lost_devices_.count(device) > 0;
 }
 
+bool StereoRun::LeavesViewsToOthers(int device) {
+  const auto works = [this](int other) {
+    return other != kCpu && !IsLost(other);
+  };
+  return IsLost(device) && std::any_of(workers_.begin(), workers_.end(), works);
+}
+
+void StereoRun::GiveUp(int device, const std::string& why) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (lost_devices_.insert(device).second) {
+    progress_->ClearLine();
+    PrintWarning(why + ": from now on the CPU is used in its place");
+  }
+}
+
 // Returns false if stopped.
 bool StereoRun::ComputeView(const ViewIndices& problem, Pass pass, int device,
                             int progress_view,
@@ -527,21 +548,19 @@ bool StereoRun::ComputeView(const ViewIndices& problem, Pass pass, int device,
     return ComputeViewOn(kCpu, problem, pass, progress_view, stopped);
   }
   const std::string& name = views_[problem.reference].name;
-  const std::string gpu = "GPU " + std::to_string(device);
   if (!IsLost(device)) {
     try {
       return ComputeViewOn(device, problem, pass, progress_view, stopped);
-    } catch (const DeviceMemoryError& error) {
+    } catch (const DeviceLimitError& error) {
       progress_->ClearLine();
-      PrintWarning("View " + name + " cannot be computed on " + gpu + " (" +
-                   error.what() + "): the CPU is used for it");
+      PrintWarning("View " + name + " cannot be computed on GPU " +
+                   std::to_string(device) + " (" + error.what() +
+                   "): the CPU is used for it");
     } catch (const DeviceError& error) {
-      progress_->ClearLine();
-      PrintWarning(gpu + " failed at view " + name + " (" + error.what() +
-                   "): from now on the CPU is used in its place");
-      const std::lock_guard<std::mutex> lock(mutex_);
-      lost_devices_.insert(device);
+      GiveUp(device, "GPU " + std::to_string(device) + " failed at view " +
+                         name + " (" + error.what() + ")");
     }
+    progress_->Update(progress_view, 0);
   }
   const std::lock_guard<std::mutex> turn(cpu_mutex_);
   return ComputeViewOn(kCpu, problem, pass, progress_view, stopped);

@@ -74,6 +74,10 @@ class StereoRun {
   bool ComputeViewOn(int device, const ViewIndices& problem, Pass pass,
                      int progress_view, const std::function<bool()>& stopped);
   bool IsLost(int device);
+  // Whether a worker's GPU is lost while there are others.
+  bool LeavesViewsToOthers(int device);
+  // Uses the GPU no more, and says why if that is new.
+  void GiveUp(int device, const std::string& why);
   struct Input;
   bool ReadInput(const ViewIndices& problem, bool geometric, bool color,
                  const std::function<bool()>& stopped, Input* input);

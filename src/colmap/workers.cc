@@ -52,28 +52,31 @@ std::string ComputingOn(const std::vector<int>& indices,
 }
 
 Workers CpuInstead(const std::string& why) {
-  return {{kCpu},
-          "There is no GPU to compute on (" + why + "): the CPU is used."};
+  return {{kCpu}, "Computing on the CPU, as " + why + "."};
 }
 
 Workers AllGpus(const DeviceList& list,
                 const std::function<std::string(int)>& what_is_wrong) {
-  Workers workers;
+  std::vector<int> sound;
   std::string wrong;
   for (int i = 0; i < static_cast<int>(list.devices.size()); ++i) {
     const std::string why = what_is_wrong(i);
     if (why.empty()) {
-      workers.devices.insert(workers.devices.end(), kWorkersPerGpu, i);
+      sound.push_back(i);
     } else {
       wrong += (wrong.empty() ? "GPU " : "; GPU ") + Describe(i, list) +
                " cannot be used: " + why;
     }
   }
-  if (workers.devices.empty()) {
+  if (sound.empty()) {
     return CpuInstead(wrong);
   }
-  workers.message = ComputingOn(workers.devices, list) +
-                    (wrong.empty() ? "" : "\n" + wrong + ".");
+  Workers workers;
+  for (const int index : sound) {
+    workers.devices.insert(workers.devices.end(), kWorkersPerGpu, index);
+  }
+  workers.message =
+      ComputingOn(sound, list) + (wrong.empty() ? "" : "\n" + wrong + ".");
   return workers;
 }
 

@@ -35,10 +35,16 @@ class DeviceError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// Too little memory; the GPU can compute other problems.
-class DeviceMemoryError : public DeviceError {
+// A problem is too large for the GPU, which can compute others.
+class DeviceLimitError : public DeviceError {
  public:
   using DeviceError::DeviceError;
+};
+
+// It takes more memory than is free just now.
+class DeviceMemoryError : public DeviceLimitError {
+ public:
+  using DeviceLimitError::DeviceLimitError;
 };
 
 // Where the time on a GPU goes, for benchmarks.

@@ -22,7 +22,7 @@ Workers Choose(const std::string& gpu_index) {
 TEST(Workers, AreTheGpusOfTheList) {
   EXPECT_EQ(Choose("-1").devices, (std::vector<int>{0, 0, 2, 2}));
   EXPECT_EQ(Choose("-1").message,
-            "Computing on GPU 0 (Fast), 0 (Fast), 2 (Slow), 2 (Slow).\n"
+            "Computing on GPU 0 (Fast), 2 (Slow).\n"
             "GPU 1 (Old) cannot be used: it is too old.");
   EXPECT_EQ(Choose("2").devices, (std::vector<int>{2}));
   EXPECT_EQ(Choose("2, 0").devices, (std::vector<int>{2, 0}));
@@ -35,8 +35,7 @@ TEST(Workers, AreTheCpuWhereThereIsNoGpuOrNoneIsWanted) {
   none.why_none = "there is no driver";
   const Workers workers = ChooseWorkers(true, "3", none, NothingIsWrong);
   EXPECT_EQ(workers.devices, (std::vector<int>{kCpu}));
-  EXPECT_NE(workers.message.find("there is no driver"), std::string::npos);
-  EXPECT_NE(workers.message.find("the CPU is used"), std::string::npos);
+  EXPECT_EQ(workers.message, "Computing on the CPU, as there is no driver.");
 
   const Workers unwanted = ChooseWorkers(false, "0", TwoGpus(), NothingIsWrong);
   EXPECT_EQ(unwanted.devices, (std::vector<int>{kCpu}));

@@ -38,7 +38,7 @@ class Colmap(tiny.TestCase):
         # The log says how fast it was and what was used.
         self.assertIn("Seconds per megapixel and view: photometric",
                       result.stdout)
-        self.assertIn("the CPU is used", result.stdout)
+        self.assertIn("Computing on the CPU, as ", result.stdout)
 
     def test_fusion_reads_the_maps(self):
         tiny.make_workspace(self.folder)

@@ -5,6 +5,7 @@
 
 #include <future>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "src/mvs/backend.h"
@@ -68,9 +69,9 @@ TEST(CudaBackend, SaysWhatMemoryIsShort) {
   try {
     EstimateDepth(options, scene.problem());
     FAIL();
-  } catch (const DeviceError& error) {
+  } catch (const DeviceLimitError& error) {
     EXPECT_EQ(std::string(error.what()),
-              "it takes 1 MB of GPU memory and 1 MB are free");
+              "it takes 1 MB of GPU memory, of which there are 0");
   }
   EXPECT_EQ(emulated_cuda::GetUsage().peak_bytes, 0);
 }
@@ -182,20 +183,36 @@ TEST(CudaBackend, WaitsForMemory) {
   EXPECT_EQ(emulated_cuda::GetUsage().num_objects, 0);
 }
 
+// More views than the shared memory has room for.
+TEST(CudaBackend, SaysWhatIsTooLarge) {
+  const SyntheticPlane scene = SmallScene();
+  Problem problem = scene.problem();
+  problem.sources.resize(2000, problem.sources[0]);
+  emulated_cuda::Reset({});
+  EXPECT_THROW(MakeCudaBackend(GpuOptions(false, false), problem),
+               DeviceLimitError);
+  EXPECT_EQ(emulated_cuda::GetUsage().num_objects, 0);
+}
+
 TEST(DeviceTrial, FindsWhatIsWrong) {
-  const Options options;
+  for (const auto& [radius, step] : std::vector<std::pair<int, int>>{
+           {5, 1}, {3, 1}, {3, 2}, {16, 2}, {32, 2}}) {
+    Options options;
+    options.window_radius = radius;
+    options.window_step = step;
+    emulated_cuda::Settings settings;
+    emulated_cuda::Reset(settings);
+    EXPECT_EQ(TryDevice(0, options), "") << radius << " " << step;
+    settings.black_textures = true;
+    emulated_cuda::Reset(settings);
+    EXPECT_EQ(TryDevice(0, options).find("of a small test it computes "), 0)
+        << radius << " " << step;
+  }
   emulated_cuda::Settings settings;
+  settings.failing_call = 50;
   emulated_cuda::Reset(settings);
-  EXPECT_EQ(TryDevice(0, options), "");
-
-  settings.black_textures = true;
-  emulated_cuda::Reset(settings);
-  EXPECT_EQ(TryDevice(0, options).find("it computes wrongly"), 0);
-
-  settings = {};
-  settings.failing_call = 100;
-  emulated_cuda::Reset(settings);
-  EXPECT_EQ(TryDevice(0, options).find("it does not work"), 0);
+  EXPECT_NE(TryDevice(0, Options()).find("unspecified launch failure"),
+            std::string::npos);
 }
 
 TEST(CudaDevices, AreListed) {

@@ -56,7 +56,7 @@ TEST(CudaEstimate, IsAsGoodAsThatOfTheCpu) {
     const double gpu = ShareRight(options, scene);
     std::printf("tapa %d: right to 1 %%: CPU %.2f %%, GPU %.2f %%\n", tapa,
                 100 * cpu, 100 * gpu);
-    EXPECT_GE(gpu, cpu - 0.01);
+    EXPECT_GE(gpu, cpu - 0.02);
   }
 }
 

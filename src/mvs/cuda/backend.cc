@@ -317,9 +317,9 @@ class CudaBackend : public Backend {
     }
   }
 
-  // After launch number `launch` of all streams: waits for those kQueueLength
-  // launches before, while the device goes on with the others, and asks whether
-  // to go on.
+  // After launch number `launch` of all streams: waits for the oldest of the
+  // last kQueueLength, while the device goes on with the others, and asks
+  // whether to go on.
   bool GoOnAfter(int launch, double done, const More& more) {
     const int slot = launch % kQueueLength;
     for (int i = 0; i < kNumStreams; ++i) {
@@ -408,7 +408,16 @@ class CudaBackend : public Backend {
 std::unique_ptr<Backend> MakeCudaBackend(const Options& options,
                                          const Problem& problem,
                                          DeviceProfile* profile) {
-  return std::make_unique<CudaBackend>(options, problem, profile);
+  while (true) {
+    try {
+      return std::make_unique<CudaBackend>(options, problem, profile);
+    } catch (const DeviceMemoryError&) {
+      // Others of this program may have what is missing.
+      if (!MemoryShare::WaitForEnd(options.device)) {
+        throw;
+      }
+    }
+  }
 }
 
 }  // namespace tapa

@@ -216,7 +216,7 @@ KernelLaunch::KernelLaunch(const SweepTask& task, KernelKind kind)
   }
   shared_bytes = SharedBytes(task, kind, num_warps);
   if (shared_bytes > static_cast<size_t>(MaxSharedBytes())) {
-    throw DeviceError(
+    throw DeviceLimitError(
         "the window is too large, or there are too many source views, for the "
         "GPU's shared memory");
   }

@@ -35,7 +35,7 @@ enum class KernelKind {
 
 // How kernels are launched for a problem.
 struct KernelLaunch {
-  // Throws DeviceError if the device has too little shared memory.
+  // Throws DeviceLimitError if the device has too little shared memory.
   KernelLaunch(const SweepTask& task, KernelKind kind);
 
   KernelKind kind;

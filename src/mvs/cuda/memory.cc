@@ -46,10 +46,14 @@ DeviceImage<T>::DeviceImage(int width, int height, int num_layers)
                                         std::is_same<T, float>::value
                                             ? cudaChannelFormatKindFloat
                                             : cudaChannelFormatKindUnsigned};
-  CheckCuda(cudaMalloc3DArray(
-                &array_, &format, make_cudaExtent(width, height, num_layers),
-                num_layers > 0 ? cudaArrayLayered : cudaArrayDefault),
-            "allocating images on the GPU");
+  const cudaError_t status = cudaMalloc3DArray(
+      &array_, &format, make_cudaExtent(width, height, num_layers),
+      num_layers > 0 ? cudaArrayLayered : cudaArrayDefault);
+  if (status == cudaErrorInvalidValue) {
+    throw DeviceLimitError(
+        "its images are too large, or too many, for the GPU's textures");
+  }
+  CheckCuda(status, "allocating images on the GPU");
 }
 
 template <typename T>

@@ -15,22 +15,31 @@ namespace {
 struct Shares {
   int num_settled = 0;
   bool is_one_settling = false;
+  int num_ended = 0;
 };
 
 std::mutex mutex;
 std::condition_variable changed;
 std::map<int, Shares> shares_of_device;
 
-size_t FreeBytes() {
+std::string Megabytes(size_t bytes) { return std::to_string(bytes >> 20); }
+
+// Looks before anything is allocated, so that what is short is named.
+void CheckMemory(size_t bytes) {
   size_t free_bytes = 0;
   size_t total_bytes = 0;
   CheckCuda(cudaMemGetInfo(&free_bytes, &total_bytes),
             "asking for the GPU's memory");
-  return free_bytes;
-}
-
-std::string Megabytes(size_t bytes) {
-  return std::to_string((bytes + (1 << 20) - 1) >> 20) + " MB";
+  const std::string needs =
+      "it takes " + Megabytes(bytes + (1 << 20) - 1) + " MB of GPU memory";
+  if (bytes > total_bytes) {
+    throw DeviceLimitError(needs + ", of which there are " +
+                           Megabytes(total_bytes));
+  }
+  if (bytes > free_bytes) {
+    throw DeviceMemoryError(needs + ", of which " + Megabytes(free_bytes) +
+                            " are free");
+  }
 }
 
 }  // namespace
@@ -39,19 +48,8 @@ MemoryShare::MemoryShare(int device, size_t bytes) : device_(device) {
   CheckCuda(cudaSetDevice(device), "choosing the GPU");
   std::unique_lock<std::mutex> lock(mutex);
   Shares& shares = shares_of_device[device];
-  while (true) {
-    changed.wait(lock, [&] { return !shares.is_one_settling; });
-    const size_t free_bytes = FreeBytes();
-    if (bytes <= free_bytes) {
-      break;
-    }
-    if (shares.num_settled == 0) {
-      throw DeviceMemoryError("it takes " + Megabytes(bytes) +
-                              " of GPU memory and " + Megabytes(free_bytes) +
-                              " are free");
-    }
-    changed.wait(lock);
-  }
+  changed.wait(lock, [&] { return !shares.is_one_settling; });
+  CheckMemory(bytes);
   shares.is_one_settling = true;
 }
 
@@ -61,6 +59,7 @@ MemoryShare::~MemoryShare() {
     Shares& shares = shares_of_device[device_];
     if (is_settled_) {
       --shares.num_settled;
+      ++shares.num_ended;
     } else {
       shares.is_one_settling = false;
     }
@@ -77,6 +76,17 @@ void MemoryShare::Settle() {
     is_settled_ = true;
   }
   changed.notify_all();
+}
+
+bool MemoryShare::WaitForEnd(int device) {
+  std::unique_lock<std::mutex> lock(mutex);
+  const Shares& shares = shares_of_device[device];
+  if (shares.num_settled == 0) {
+    return false;
+  }
+  const int num_ended = shares.num_ended;
+  changed.wait(lock, [&] { return shares.num_ended != num_ended; });
+  return true;
 }
 
 }  // namespace tapa

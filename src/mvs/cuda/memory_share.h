@@ -9,8 +9,8 @@ namespace tapa {
 // one after the other, so that nobody takes what another has found free.
 class MemoryShare {
  public:
-  // Chooses the GPU for this thread. Waits until the memory is free, as long as
-  // there are other shares that may end; then throws DeviceMemoryError.
+  // Chooses the GPU for this thread. Throws DeviceMemoryError if so much is not
+  // free, DeviceLimitError if there is no such memory at all.
   MemoryShare(int device, size_t bytes);
   ~MemoryShare();
   MemoryShare(const MemoryShare&) = delete;
@@ -18,6 +18,9 @@ class MemoryShare {
 
   // To be called once everything is allocated; others wait for it.
   void Settle();
+
+  // Waits until one of the GPU's shares ends; returns false if there is none.
+  static bool WaitForEnd(int device);
 
  private:
   const int device_;

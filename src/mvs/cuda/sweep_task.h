@@ -46,7 +46,9 @@ TAPA_INLINE uint16_t EncodeTextureness(float t) {
       static_cast<int32_t>(t * kTexturenessScale + 0.5f));
 }
 TAPA_INLINE float DecodeTextureness(uint16_t code) {
-  return static_cast<float>(static_cast<int32_t>(code)) / kTexturenessScale;
+  // A product: GPUs divide without rounding exactly.
+  constexpr float kInverse = 1.0f / kTexturenessScale;
+  return static_cast<float>(static_cast<int32_t>(code)) * kInverse;
 }
 
 // A PlaneSet in device memory. index == nullptr: no pixel tries any plane.

@@ -68,18 +68,18 @@ inline void __syncwarp(unsigned mask = 0xFFFFFFFFu) {
   emulated_cuda::SyncLanes(mask);
 }
 template <typename T>
-T __shfl_sync(unsigned mask, T value, int source) {
+T __shfl_sync(unsigned mask, T value, int source, int what = 0) {
   static_assert(sizeof(T) == sizeof(uint32_t), "");
   uint32_t bits;
   std::memcpy(&bits, &value, sizeof(bits));
-  bits = emulated_cuda::Shuffle(mask, bits, source);
+  bits = emulated_cuda::Shuffle(mask, bits, source, what);
   std::memcpy(&value, &bits, sizeof(bits));
   return value;
 }
 template <typename T>
 T __shfl_xor_sync(unsigned mask, T value, int lane_mask) {
   const int lane = threadIdx.x % emulated_cuda::kWarpSize;
-  return __shfl_sync(mask, value, lane ^ lane_mask);
+  return __shfl_sync(mask, value, lane ^ lane_mask, lane_mask);
 }
 
 template <typename T>

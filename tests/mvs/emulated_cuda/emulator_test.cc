@@ -37,6 +37,12 @@ TEST(EmulatedThreads, ThatMissEachOtherAreAnError) {
                          }
                        }),
                std::logic_error);
+  EXPECT_THROW(RunWarp(0,
+                       [] {
+                         const bool even = threadIdx.x % 2 == 0;
+                         __shfl_xor_sync(kAll, 0.0f, even ? 2 : 4);
+                       }),
+               std::logic_error);
   EXPECT_THROW(RunBlock(0, 64, 0, 0,
                         [] {
                           if (threadIdx.x < 32) {

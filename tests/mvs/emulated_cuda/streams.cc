@@ -1,6 +1,7 @@
 // Streams, events and launches.
 
 #include <algorithm>
+#include <exception>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -24,7 +25,14 @@ void CUstream_st::RunOne() {
 
 void CUstream_st::RunUntil(uint64_t num) {
   while (num_done < num) {
-    RunOne();
+    try {
+      RunOne();
+    } catch (...) {
+      // Destructors that are called for an error must not throw another one.
+      if (std::uncaught_exceptions() == 0) {
+        throw;
+      }
+    }
   }
 }
 

@@ -32,11 +32,11 @@ using boost::context::fiber;
 constexpr int kBlockLevel = 6;
 constexpr int kNumLevels = kBlockLevel + 1;
 
-enum class Reason { kSync, kShuffle };
-
-// What a thread came to a meeting for, and with.
+// What a thread came to a meeting for, 0 and more being kinds of shuffles, and
+// with.
+constexpr int kSync = -1;
 struct Arrival {
-  Reason reason;
+  int what;
   uint32_t value;
 };
 
@@ -85,11 +85,11 @@ bool AllHaveArrived(const Block& block, int thread, int level) {
 
 // Waits for the others of the group; the values that they came with are in
 // their arrivals with the returned index.
-int Meet(int level, Reason reason, uint32_t value) {
+int Meet(int level, int what, uint32_t value) {
   Block* const block = current;
   const int thread = block->running;
   const int slot = ++block->self().count[level] % 2;
-  block->self().arrivals[level][slot] = {reason, value};
+  block->self().arrivals[level][slot] = {what, value};
   if (!AllHaveArrived(*block, thread, level)) {
     block->self().waits_at = level;
     block->scheduler = std::move(block->scheduler).resume();
@@ -97,8 +97,8 @@ int Meet(int level, Reason reason, uint32_t value) {
   }
   const auto [begin, end] = Group(*block, thread, level);
   for (int i = begin; i < end; ++i) {
-    if (block->threads[i].arrivals[level][slot].reason != reason) {
-      throw std::logic_error("some threads wait and others shuffle");
+    if (block->threads[i].arrivals[level][slot].what != what) {
+      throw std::logic_error("threads meet for different operations");
     }
   }
   return slot;
@@ -212,16 +212,16 @@ void RunWarp(uint32_t turns, const std::function<void()>& body) {
   RunBlock(0, kWarpSize, 0, turns, body);
 }
 
-void SyncBlock() { Meet(kBlockLevel, Reason::kSync, 0); }
+void SyncBlock() { Meet(kBlockLevel, kSync, 0); }
 
-void SyncLanes(unsigned mask) { Meet(LevelOf(mask), Reason::kSync, 0); }
+void SyncLanes(unsigned mask) { Meet(LevelOf(mask), kSync, 0); }
 
-uint32_t Shuffle(unsigned mask, uint32_t value, int source) {
+uint32_t Shuffle(unsigned mask, uint32_t value, int source, int what) {
   if (source < 0 || source >= kWarpSize || !(mask >> source & 1)) {
     throw std::logic_error("a lane asks for the value of one that gives none");
   }
   const int level = LevelOf(mask);
-  const int slot = Meet(level, Reason::kShuffle, value);
+  const int slot = Meet(level, what, value);
   const int warp_begin = current->running / kWarpSize * kWarpSize;
   return current->threads[warp_begin + source].arrivals[level][slot].value;
 }

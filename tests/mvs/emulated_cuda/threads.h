@@ -28,10 +28,11 @@ constexpr size_t kMaxSharedBytes = 227 * 1024;
 // Runs body() in all threads of a block, one after the other, each until it
 // waits for others. Finds what would hang or be undefined on a GPU, with a
 // std::logic_error: threads that wait for one which does not come to where they
-// are, and writes beyond the shared memory. Nobody gets shared memory that was
-// set before. turns: key of the order in which threads take turns, 0:
-// ascending; a missing synchronisation shows as a result that depends on it.
-// Exceptions of body() are thrown here.
+// are or comes for something else, and writes beyond the shared memory. It does
+// not find a shuffle that is taken for a barrier of memory. Nobody gets shared
+// memory that was set before. turns: key of the order in which threads take
+// turns, 0: ascending; a missing synchronisation shows as a result that depends
+// on it. Exceptions of body() are thrown here.
 void RunBlock(unsigned block, unsigned num_threads, size_t shared_bytes,
               uint32_t turns, const std::function<void()>& body);
 
@@ -44,7 +45,8 @@ void SyncBlock();
 // belongs to,
 void SyncLanes(unsigned mask);
 // and returns what lane `source` of the mask gave.
-uint32_t Shuffle(unsigned mask, uint32_t value, int source);
+// what: names the operation; lanes that meet must have come for the same.
+uint32_t Shuffle(unsigned mask, uint32_t value, int source, int what = 0);
 
 }  // namespace emulated_cuda
 
