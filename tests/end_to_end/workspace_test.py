@@ -200,7 +200,7 @@ class Colmap(tiny.TestCase):
                            "--project_path", self.path("project.ini")])
         self.assert_success(result)
         self.assertIn("seed: 17", result.stdout)
-        self.assertNotIn("the CPU is used", result.stdout)
+        self.assertNotIn("Computing on the CPU", result.stdout)
 
 
 class Pmvs(tiny.TestCase):

@@ -628,7 +628,7 @@ class MachineTest(unittest.TestCase):
                 ("Computing on GPU 0 (A (Laptop)), 0 (A (Laptop)), 2 (B).",
                  "A (Laptop), B"),
                 ("Computing on GPU 1 (A), 3 (A).", "2 x A"),
-                ("There is no GPU to compute on (none): the CPU is used.", None)):
+                ("Computing on the CPU, as there is no driver.", None)):
             self.assertEqual(machine.gpus_in(["Reading", line, "Elapsed"]), text)
 
 
