@@ -122,8 +122,9 @@ Result Measure(const WideScene& scene, const Mode& mode, int device) {
 
 // Before anything is timed: kernels are loaded when they are launched first,
 // and the clock rises under load.
-void WarmUp(int device) {
-  const WideScene scene(640, 480, 10);
+void WarmUp(int device, int width, int height, int num_sources) {
+  const WideScene scene(std::min(width, 640), std::min(height, 480),
+                        std::min(num_sources, 10));
   const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(2);
   do {
     for (const Mode& mode : kModes) {
@@ -200,10 +201,14 @@ int Main(int argc, char** argv) {
     ++device;
   }
   std::printf("GPU %d: %s\n\n", device, list.devices[device].name.c_str());
-  WarmUp(device);
   if (argc == 4) {
-    Run(device, std::atoi(argv[1]), std::atoi(argv[2]), std::atoi(argv[3]));
+    const int width = std::atoi(argv[1]);
+    const int height = std::atoi(argv[2]);
+    const int num_sources = std::atoi(argv[3]);
+    WarmUp(device, width, height, num_sources);
+    Run(device, width, height, num_sources);
   } else {
+    WarmUp(device, 960, 640, 10);
     Run(device, 960, 640, 10);
     Run(device, 3200, 2130, 20);
   }
