@@ -223,6 +223,7 @@ KernelLaunch::KernelLaunch(const SweepTask& task, KernelKind kind)
   block_threads = naive ? kNaiveBlockThreads : num_warps * kWarpSize;
   lines_per_block = naive ? kNaiveBlockThreads : num_warps;
   AllowSharedBytes(reinterpret_cast<const void*>(SweepKernelOf(kind)));
+  AllowSharedBytes(reinterpret_cast<const void*>(InitializeKernelOf(kind)));
 }
 
 void LaunchInitialize(const KernelLaunch& launch, const SweepTask& task,
@@ -231,11 +232,10 @@ void LaunchInitialize(const KernelLaunch& launch, const SweepTask& task,
   const size_t first = task.Pixel(begin, 0);
   const size_t last = task.Pixel(end, 0);
   // The naive kernel is one for sweeps only.
-  const KernelLaunch usual(task, launch.kind == KernelKind::kNaive
-                                     ? KernelKind::kCommon
-                                     : launch.kind);
+  const KernelLaunch usual = launch.kind == KernelKind::kNaive
+                                 ? KernelLaunch(task, KernelKind::kCommon)
+                                 : launch;
   const InitializeKernelPointer kernel = InitializeKernelOf(usual.kind);
-  AllowSharedBytes(reinterpret_cast<const void*>(kernel));
   const size_t pixels_per_block = usual.lines_per_block * kPixelsPerWarp;
   Launch(kernel,
          {NumBlocks(last - first, pixels_per_block), usual.block_threads,

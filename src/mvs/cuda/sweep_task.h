@@ -117,11 +117,6 @@ struct SweepTask {
   }
 };
 
-// Number of words of a table of cameras for n views whose arrays have a stride.
-constexpr int CameraWords(int stride) {
-  return SourceCameras::kNumCoefficients * stride;
-}
-
 }  // namespace tapa
 
 #endif  // TAPA_SRC_MVS_CUDA_SWEEP_TASK_H_
