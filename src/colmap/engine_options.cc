@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "src/files/failure.h"
+#include "src/base/failure.h"
 
 namespace tapa {
 namespace {

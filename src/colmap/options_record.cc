@@ -7,9 +7,9 @@
 #include <set>
 #include <vector>
 
+#include "src/base/atomic_file.h"
+#include "src/base/failure.h"
 #include "src/colmap/option_list.h"
-#include "src/files/atomic_file.h"
-#include "src/files/failure.h"
 #include "util/misc.h"
 
 namespace tapa {

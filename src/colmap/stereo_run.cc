@@ -14,12 +14,12 @@
 #include <thread>
 #include <unordered_set>
 
+#include "src/base/failure.h"
 #include "src/colmap/consistency_graph.h"
 #include "src/colmap/engine_options.h"
 #include "src/colmap/map_files.h"
 #include "src/colmap/tapa_debug.h"
 #include "src/colmap/workers.h"
-#include "src/files/failure.h"
 #include "src/mvs/devices.h"
 #include "src/mvs/estimate_depth.h"
 #include "src/mvs/tapa/stages.h"

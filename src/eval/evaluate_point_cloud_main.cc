@@ -16,14 +16,14 @@
 #include <string>
 #include <vector>
 
+#include "src/base/atomic_file.h"
+#include "src/base/parallel.h"
 #include "src/eval/cloud_checks.h"
 #include "src/eval/command_line.h"
 #include "src/eval/meshlab_project.h"
 #include "src/eval/point_cloud.h"
 #include "src/eval/point_cloud_score.h"
 #include "src/eval/tolerance.h"
-#include "src/files/atomic_file.h"
-#include "src/mvs/cpu/parallel.h"
 
 namespace tapa {
 namespace {

@@ -6,10 +6,10 @@
 #include <optional>
 #include <vector>
 
-#include "src/mvs/map.h"
+#include "src/base/map.h"
+#include "src/base/uninitialized_vector.h"
+#include "src/base/vec3.h"
 #include "src/mvs/options.h"
-#include "src/mvs/uninitialized_vector.h"
-#include "src/mvs/vec3.h"
 #include "src/mvs/view.h"
 
 namespace tapa {

@@ -1,14 +1,7 @@
 #ifndef TAPA_SRC_MVS_HOST_DEVICE_H_
 #define TAPA_SRC_MVS_HOST_DEVICE_H_
 
-// Marks the functions that both backends share. They are always inlined: on the
-// CPU that compiles them with the instruction set of the caller, which is
-// chosen at run time; on a GPU it keeps their data in registers.
-#if defined(__CUDACC__)
-#define TAPA_INLINE __host__ __device__ __forceinline__
-#else
-#define TAPA_INLINE inline __attribute__((always_inline))
-#endif
+#include "src/base/inline.h"
 
 // Before a loop: how many of its rounds a GPU's code has one after the other.
 #if defined(__CUDA_ARCH__)

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "src/mvs/vec3.h"
+#include "src/base/vec3.h"
 
 namespace tapa {
 

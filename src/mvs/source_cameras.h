@@ -1,7 +1,7 @@
 #ifndef TAPA_SRC_MVS_SOURCE_CAMERAS_H_
 #define TAPA_SRC_MVS_SOURCE_CAMERAS_H_
 
-#include "src/mvs/vec3.h"
+#include "src/base/vec3.h"
 
 namespace tapa {
 

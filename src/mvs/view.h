@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-#include "src/mvs/map.h"
+#include "src/base/map.h"
 
 namespace tapa {
 

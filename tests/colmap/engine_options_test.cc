@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "src/files/failure.h"
+#include "src/base/failure.h"
 
 namespace tapa {
 namespace {

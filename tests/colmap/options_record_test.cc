@@ -6,8 +6,8 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "src/base/failure.h"
 #include "src/colmap/engine_options.h"
-#include "src/files/failure.h"
 #include "tests/colmap/test_folder.h"
 
 namespace tapa {

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "src/files/failure.h"
+#include "src/base/failure.h"
 #include "tests/colmap/test_folder.h"
 #include "util/bitmap.h"
 

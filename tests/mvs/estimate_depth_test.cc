@@ -9,8 +9,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "src/base/parallel.h"
 #include "src/mvs/cpu/aligned.h"
-#include "src/mvs/cpu/parallel.h"
 #include "tests/mvs/synthetic.h"
 
 namespace tapa {

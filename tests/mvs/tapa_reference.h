@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "src/mvs/map.h"
+#include "src/base/map.h"
 #include "src/mvs/plane_set.h"
 #include "src/mvs/tapa/fill.h"
 #include "src/mvs/tapa/speckles.h"

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "src/mvs/cpu/parallel.h"
+#include "src/base/parallel.h"
 #include "src/mvs/cpu/problem_data.h"
 #include "src/mvs/cpu/sweep.h"
 
