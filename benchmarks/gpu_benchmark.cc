@@ -17,7 +17,7 @@
 #include "benchmarks/wide_scene.h"
 #include "src/mvs/backend.h"
 #include "src/mvs/devices.h"
-#include "src/mvs/hypotheses.h"
+#include "src/mvs/sweep/hypotheses.h"
 
 namespace tapa {
 namespace {

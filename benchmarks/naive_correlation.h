@@ -3,7 +3,7 @@
 
 #include "src/base/map.h"
 #include "src/mvs/cpu/window.h"
-#include "src/mvs/source_cameras.h"
+#include "src/mvs/sweep/source_cameras.h"
 
 namespace tapa {
 

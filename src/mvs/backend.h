@@ -8,7 +8,7 @@
 
 #include "src/mvs/estimate_depth.h"
 #include "src/mvs/plane_set.h"
-#include "src/mvs/sweep.h"
+#include "src/mvs/sweep/sweep.h"
 
 namespace tapa {
 
@@ -32,7 +32,7 @@ class Backend {
   virtual bool Sweep(const SweepParams& params, const More& more) = 0;
 
   // Weighs costs by the textureness of every pixel from now on, see
-  // texture_weights.h.
+  // sweep/texture_weights.h.
   virtual void SetTextureness(Map<float> textureness) = 0;
 
   // Gives sweeps further hypotheses, until the next call.

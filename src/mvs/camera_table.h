@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "src/mvs/estimate_depth.h"
-#include "src/mvs/plane.h"
-#include "src/mvs/source_cameras.h"
+#include "src/mvs/sweep/plane.h"
+#include "src/mvs/sweep/source_cameras.h"
 
 namespace tapa {
 

@@ -6,7 +6,7 @@
 
 #include "src/mvs/devices.h"
 #include "src/mvs/estimate_depth.h"
-#include "src/mvs/random.h"
+#include "src/mvs/sweep/random.h"
 
 namespace tapa {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "src/mvs/random.h"
+#include "src/mvs/sweep/random.h"
 
 namespace tapa::reference {
 namespace {

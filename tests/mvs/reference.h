@@ -5,7 +5,7 @@
 
 #include "src/mvs/cpu/problem_data.h"
 #include "src/mvs/estimate_depth.h"
-#include "src/mvs/plane.h"
+#include "src/mvs/sweep/plane.h"
 
 // The algorithm once more, as literally and slowly as possible, in double
 // precision and without sharing code with the engine but the random numbers:

@@ -1,4 +1,4 @@
-#include "src/mvs/sweep.h"
+#include "src/mvs/sweep/sweep.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 
 #include "src/mvs/camera_table.h"
 #include "src/mvs/cpu/sweep.h"
+#include "src/mvs/sweep/texture_weights.h"
 #include "src/mvs/tapa/textureness.h"
-#include "src/mvs/texture_weights.h"
 #include "tests/mvs/reference.h"
 #include "tests/mvs/sweep_start.h"
 #include "tests/mvs/synthetic.h"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "src/base/map.h"
-#include "src/mvs/plane_set.h"
+#include "src/mvs/sweep/scene_plane.h"
 #include "src/mvs/tapa/fill.h"
 #include "src/mvs/tapa/speckles.h"
 #include "src/mvs/tapa/superpixels.h"

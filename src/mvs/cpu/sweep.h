@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "src/mvs/cpu/problem_data.h"
-#include "src/mvs/sweep.h"
+#include "src/mvs/sweep/sweep.h"
 
 namespace tapa {
 

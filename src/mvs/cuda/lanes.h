@@ -3,8 +3,8 @@
 
 #include <cuda_runtime.h>
 
-#include "src/mvs/host_device.h"
-#include "src/mvs/sweep.h"
+#include "src/mvs/sweep/host_device.h"
+#include "src/mvs/sweep/sweep.h"
 
 namespace tapa {
 

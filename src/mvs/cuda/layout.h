@@ -3,9 +3,9 @@
 
 #include <cstdint>
 
-#include "src/mvs/host_device.h"
 #include "src/mvs/options.h"
-#include "src/mvs/sweep.h"
+#include "src/mvs/sweep/host_device.h"
+#include "src/mvs/sweep/sweep.h"
 
 namespace tapa {
 

@@ -1,9 +1,9 @@
-#ifndef TAPA_SRC_MVS_GEOMETRIC_COST_H_
-#define TAPA_SRC_MVS_GEOMETRIC_COST_H_
+#ifndef TAPA_SRC_MVS_SWEEP_GEOMETRIC_COST_H_
+#define TAPA_SRC_MVS_SWEEP_GEOMETRIC_COST_H_
 
 #include <cmath>
 
-#include "src/mvs/source_cameras.h"
+#include "src/mvs/sweep/source_cameras.h"
 
 namespace tapa {
 
@@ -53,4 +53,4 @@ TAPA_INLINE float ReprojectionError(const SourceCameras& views, int m,
 
 }  // namespace tapa
 
-#endif  // TAPA_SRC_MVS_GEOMETRIC_COST_H_
+#endif  // TAPA_SRC_MVS_SWEEP_GEOMETRIC_COST_H_

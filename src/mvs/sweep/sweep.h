@@ -1,15 +1,15 @@
-#ifndef TAPA_SRC_MVS_SWEEP_H_
-#define TAPA_SRC_MVS_SWEEP_H_
+#ifndef TAPA_SRC_MVS_SWEEP_SWEEP_H_
+#define TAPA_SRC_MVS_SWEEP_SWEEP_H_
 
 #include <cmath>
 
-#include "src/mvs/geometric_cost.h"
-#include "src/mvs/hypotheses.h"
-#include "src/mvs/plane.h"
-#include "src/mvs/source_cameras.h"
-#include "src/mvs/texture_weights.h"
-#include "src/mvs/view_prior.h"
-#include "src/mvs/view_selection.h"
+#include "src/mvs/sweep/geometric_cost.h"
+#include "src/mvs/sweep/hypotheses.h"
+#include "src/mvs/sweep/plane.h"
+#include "src/mvs/sweep/source_cameras.h"
+#include "src/mvs/sweep/texture_weights.h"
+#include "src/mvs/sweep/view_prior.h"
+#include "src/mvs/sweep/view_selection.h"
 
 // What a sweep does with one pixel. Written once for all backends: a backend
 // brings `Lanes`, which says how the work is shared out, and `Sources`, which
@@ -568,4 +568,4 @@ TAPA_INLINE Choice SweepPixel(const SweepParams& params,
 
 }  // namespace tapa
 
-#endif  // TAPA_SRC_MVS_SWEEP_H_
+#endif  // TAPA_SRC_MVS_SWEEP_SWEEP_H_

@@ -1,5 +1,5 @@
-#ifndef TAPA_SRC_MVS_SOURCE_CAMERAS_H_
-#define TAPA_SRC_MVS_SOURCE_CAMERAS_H_
+#ifndef TAPA_SRC_MVS_SWEEP_SOURCE_CAMERAS_H_
+#define TAPA_SRC_MVS_SWEEP_SOURCE_CAMERAS_H_
 
 #include "src/base/vec3.h"
 
@@ -86,4 +86,4 @@ TAPA_INLINE Warp ComputeWarp(const SourceCameras& views, int m, float row,
 
 }  // namespace tapa
 
-#endif  // TAPA_SRC_MVS_SOURCE_CAMERAS_H_
+#endif  // TAPA_SRC_MVS_SWEEP_SOURCE_CAMERAS_H_

@@ -1,5 +1,5 @@
-#ifndef TAPA_SRC_MVS_PLANE_H_
-#define TAPA_SRC_MVS_PLANE_H_
+#ifndef TAPA_SRC_MVS_SWEEP_PLANE_H_
+#define TAPA_SRC_MVS_SWEEP_PLANE_H_
 
 #include <cmath>
 
@@ -53,4 +53,4 @@ TAPA_INLINE Vec3 HomographyVector(const RefCamera& camera, const Plane& plane,
 
 }  // namespace tapa
 
-#endif  // TAPA_SRC_MVS_PLANE_H_
+#endif  // TAPA_SRC_MVS_SWEEP_PLANE_H_

@@ -1,11 +1,11 @@
-#ifndef TAPA_SRC_MVS_HYPOTHESES_H_
-#define TAPA_SRC_MVS_HYPOTHESES_H_
+#ifndef TAPA_SRC_MVS_SWEEP_HYPOTHESES_H_
+#define TAPA_SRC_MVS_SWEEP_HYPOTHESES_H_
 
 #include <cmath>
 
-#include "src/mvs/math.h"
-#include "src/mvs/plane.h"
-#include "src/mvs/random.h"
+#include "src/mvs/sweep/math.h"
+#include "src/mvs/sweep/plane.h"
+#include "src/mvs/sweep/random.h"
 
 namespace tapa {
 
@@ -62,4 +62,4 @@ TAPA_INLINE Vec3 PerturbNormal(const Random& random, float perturbation,
 
 }  // namespace tapa
 
-#endif  // TAPA_SRC_MVS_HYPOTHESES_H_
+#endif  // TAPA_SRC_MVS_SWEEP_HYPOTHESES_H_
