@@ -8,7 +8,7 @@
 
 #include "src/mvs/estimate_depth.h"
 #include "src/mvs/plane_set.h"
-#include "src/mvs/sweep/sweep.h"
+#include "src/mvs/sweep/sweep_params.h"
 
 namespace tapa {
 

@@ -9,6 +9,7 @@
 #include "src/mvs/backend.h"
 #include "src/mvs/camera_table.h"
 #include "src/mvs/devices.h"
+#include "src/mvs/sweep/hypotheses.h"
 #include "src/mvs/tapa/stages.h"
 
 namespace tapa {

@@ -45,7 +45,7 @@ struct Estimate {
   // + m / 8] says whether source view m supports the estimate. TAPA's geometric
   // pass looks at depths and angles only, not at selection probabilities.
   std::vector<uint8_t> consistent;
-  // With TAPA: the hypothesis (sweep.h) that each pixel chose last.
+  // With TAPA: the hypothesis (sweep/hypotheses.h) that each pixel chose last.
   Map<uint8_t> chosen;
 };
 

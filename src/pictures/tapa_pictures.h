@@ -59,7 +59,7 @@ const std::vector<std::string>& TapaPictureNames();
 // there, or differ in size.
 std::vector<NamedPicture> DrawTapaPictures(const TapaView& view);
 
-// The colour of a hypothesis (Hypothesis in sweep.h).
+// The colour of a hypothesis (Hypothesis in sweep/hypotheses.h).
 cv::Vec3b HypothesisColor(int hypothesis);
 
 // The colour of an origin (Origin in stages.h).

@@ -37,7 +37,7 @@ struct State {
   Map<Vec3> normal;
   std::vector<double> cost;
   std::vector<double> prob;
-  // The hypothesis (src/mvs/sweep.h) that each pixel chose last.
+  // The hypothesis (src/mvs/sweep/hypotheses.h) that each pixel chose last.
   Map<uint8_t> chosen;
 };
 

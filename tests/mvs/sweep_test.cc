@@ -1,4 +1,4 @@
-#include "src/mvs/sweep/sweep.h"
+#include "src/mvs/cpu/sweep.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <string>
 
 #include "src/mvs/camera_table.h"
-#include "src/mvs/cpu/sweep.h"
+#include "src/mvs/sweep/sweep_pixel.h"
 #include "src/mvs/sweep/texture_weights.h"
 #include "src/mvs/tapa/textureness.h"
 #include "tests/mvs/reference.h"

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "src/mvs/estimate_depth.h"
-#include "src/mvs/sweep/sweep.h"
+#include "src/mvs/sweep/hypotheses.h"
 #include "src/mvs/tapa/stages.h"
 #include "tests/mvs/synthetic.h"
 

@@ -8,6 +8,7 @@
 #include "src/mvs/cuda/memory.h"
 #include "src/mvs/cuda/sweep_body.h"
 #include "src/mvs/devices.h"
+#include "src/mvs/sweep/lanes.h"
 
 namespace tapa {
 

@@ -5,7 +5,8 @@
 
 #include "src/mvs/options.h"
 #include "src/mvs/sweep/host_device.h"
-#include "src/mvs/sweep/sweep.h"
+#include "src/mvs/sweep/hypotheses.h"
+#include "src/mvs/sweep/pixel_scratch.h"
 
 namespace tapa {
 

@@ -17,6 +17,13 @@
 #define TAPA_UNROLL(count)
 #endif
 
+// Before a loop whose rounds do not depend on each other.
+#if defined(__CUDACC__)
+#define TAPA_INDEPENDENT_ITERATIONS
+#else
+#define TAPA_INDEPENDENT_ITERATIONS _Pragma("GCC ivdep")
+#endif
+
 // Whether this is code for a GPU, or for the one that tests emulate.
 #if defined(__CUDA_ARCH__) || defined(TAPA_EMULATED_CUDA)
 #define TAPA_ON_DEVICE
