@@ -16,9 +16,11 @@
 #include "src/colmap/view_cache.h"
 #include "src/colmap/views.h"
 #include "src/colmap/workspace.h"
-#include "src/mvs/estimate_depth.h"
+#include "src/mvs/problem.h"
 
 namespace tapa {
+
+struct TapaRecord;
 
 // Computes the maps of all views that a workspace's configuration lists, each
 // worker one view after the other. What can be wrong is looked for before

@@ -6,8 +6,9 @@
 #include <memory>
 #include <vector>
 
-#include "src/mvs/estimate_depth.h"
+#include "src/mvs/options.h"
 #include "src/mvs/plane_set.h"
+#include "src/mvs/problem.h"
 #include "src/mvs/sweep/sweep_params.h"
 
 namespace tapa {

@@ -4,7 +4,8 @@
 #include <vector>
 
 #include "src/mvs/cpu/problem_data.h"
-#include "src/mvs/estimate_depth.h"
+#include "src/mvs/options.h"
+#include "src/mvs/problem.h"
 #include "src/mvs/sweep/plane.h"
 
 // The algorithm once more, as literally and slowly as possible, in double

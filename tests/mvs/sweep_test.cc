@@ -9,6 +9,7 @@
 #include <string>
 
 #include "src/mvs/camera_table.h"
+#include "src/mvs/estimate_depth.h"
 #include "src/mvs/sweep/sweep_pixel.h"
 #include "src/mvs/sweep/texture_weights.h"
 #include "src/mvs/tapa/textureness.h"

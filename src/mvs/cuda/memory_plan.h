@@ -3,7 +3,8 @@
 
 #include <cstddef>
 
-#include "src/mvs/estimate_depth.h"
+#include "src/mvs/options.h"
+#include "src/mvs/problem.h"
 
 namespace tapa {
 

@@ -4,7 +4,9 @@
 #include <vector>
 
 #include "src/mvs/backend.h"
-#include "src/mvs/estimate_depth.h"
+#include "src/mvs/control.h"
+#include "src/mvs/options.h"
+#include "src/mvs/problem.h"
 #include "src/mvs/tapa/completion.h"
 #include "src/mvs/tapa/speckles.h"
 #include "src/mvs/tapa/superpixel_planes.h"
