@@ -20,7 +20,7 @@
 #include "src/colmap/map_files.h"
 #include "src/colmap/tapa_debug.h"
 #include "src/colmap/workers.h"
-#include "src/mvs/devices.h"
+#include "src/mvs/device_error.h"
 #include "src/mvs/estimate_depth.h"
 #include "src/mvs/tapa/stages.h"
 #include "util/misc.h"

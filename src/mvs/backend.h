@@ -3,10 +3,8 @@
 
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <vector>
 
-#include "src/mvs/options.h"
 #include "src/mvs/plane_set.h"
 #include "src/mvs/problem.h"
 #include "src/mvs/sweep/sweep_params.h"
@@ -52,12 +50,6 @@ class Backend {
   // Moves the result out; the backend cannot be used any more.
   virtual Estimate TakeResult() = 0;
 };
-
-// options.num_threads threads of the CPU, with its widest SIMD instructions.
-std::unique_ptr<Backend> MakeCpuBackend(const Options& options,
-                                        const Problem& problem);
-
-// That on a GPU is made by MakeCudaBackend, devices.h.
 
 }  // namespace tapa
 

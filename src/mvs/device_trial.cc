@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "src/mvs/devices.h"
+#include "src/mvs/device_error.h"
 #include "src/mvs/estimate_depth.h"
 #include "src/mvs/sweep/random.h"
 

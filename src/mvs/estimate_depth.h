@@ -12,22 +12,17 @@ namespace tapa {
 
 // Estimates depth and normal of every pixel of the reference view. Returns
 // nothing if control.stopped() said so. Throws std::invalid_argument for
-// options or a problem that make no sense, and DeviceError (devices.h) if a GPU
-// fails, which the CPU does not. The result depends neither on the
-// number of threads nor on what was estimated before. Takes the problem by
-// value: move it in where its maps are large.
+// options or a problem that make no sense, and DeviceError (device_error.h) if
+// a GPU fails, which the CPU does not. The result depends neither on the number
+// of threads nor on what was estimated before. Takes the problem by value: move
+// it in where its maps are large.
 std::optional<Estimate> EstimateDepth(const Options& options, Problem problem,
                                       const Control& control = Control());
 
 // Bytes of memory that EstimateDepth needs besides the images and depth maps of
-// the views. For n source views of w x h pixels:
-//
-//   w h (16 + 1 + 4 n) for the estimate, the image, the costs and probabilities
-//   w h ceil(n / 8)    for Estimate::consistent, with Options::filter or TAPA
-//   37 w h             for TAPA
-//   2 w h n            for the source images
-//
-// The views themselves need w h (1 + n) and, in the geometric pass, 4 w h n.
+// the views: for w x h pixels what the CPU backend takes (cpu/memory_plan.h),
+// and 37 w h for TAPA. For n source views the views themselves need w h (1 + n)
+// and, in the geometric pass, 4 w h n.
 size_t EstimateDepthMemory(const Options& options, const Problem& problem);
 
 }  // namespace tapa

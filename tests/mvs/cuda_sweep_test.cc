@@ -7,11 +7,10 @@
 #include <cstring>
 #include <random>
 
-#include "src/mvs/backend.h"
+#include "src/mvs/backends.h"
 #include "src/mvs/cuda/layout.h"
 #include "src/mvs/cuda/packed_plane.h"
 #include "src/mvs/cuda/sweep_task.h"
-#include "src/mvs/devices.h"
 #include "tests/mvs/emulated_cuda/emulator.h"
 #include "tests/mvs/sweep_start.h"
 #include "tests/mvs/synthetic.h"
