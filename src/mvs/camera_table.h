@@ -9,7 +9,8 @@
 
 namespace tapa {
 
-// Computes and owns the cameras of a problem in the form that sweeps read.
+// Computes and owns the cameras of a problem in the form that sweeps read: for
+// indices of pixels, whole numbers being their centres.
 class CameraTable {
  public:
   explicit CameraTable(const Problem& problem);

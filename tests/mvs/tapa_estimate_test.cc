@@ -88,8 +88,9 @@ void ExpectSound(const Problem& problem, const Estimate& estimate) {
       if (depth == 0) {
         EXPECT_EQ(Dot(normal, normal), 0);
       } else {
-        const Vec3 ray = {static_cast<float>((col - camera.cx) / camera.fx),
-                          static_cast<float>((row - camera.cy) / camera.fy), 1};
+        const Vec3 ray = {
+            static_cast<float>((col + 0.5 - camera.cx) / camera.fx),
+            static_cast<float>((row + 0.5 - camera.cy) / camera.fy), 1};
         EXPECT_NEAR(Dot(normal, normal), 1, 1e-4);
         EXPECT_LT(Dot(normal, ray), 1e-6f);
       }
