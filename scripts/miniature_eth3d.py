@@ -23,7 +23,8 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from evaluation import colmap_model, depth_maps, depth_scans
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+from evaluation import colmap_model, depth_maps, depth_scans  # noqa: E402
 
 ROOM = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../examples/room")
 # A lens like that of ETH3D's camera: k1, k2, p1, p2, k3, k4, sx1, sy1.

@@ -8,9 +8,9 @@ import unittest
 
 import numpy as np
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../scripts"))
-from evaluation import colmap_model  # noqa: E402
-from evaluation.processes import Failure  # noqa: E402
+import helpers  # It finds the package.
+from evaluation import colmap_model
+from evaluation.processes import Failure
 
 # Of the size and strength of the benchmark's photographs.
 LENS = colmap_model.Camera("THIN_PRISM_FISHEYE", 6048, 4032, (

@@ -7,13 +7,11 @@ import os
 import sys
 import unittest
 
-_ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../..")
-sys.path.insert(0, os.path.join(_ROOT, "scripts"))
-from evaluation import (benchmark, cloud_scores, depth_scans,  # noqa: E402
-                        depth_scores, eth3d_scenes, files, run_record,
+from helpers import TestCase, make_record
+from evaluation import (cloud_scores, depth_scans, depth_scores, experiment, files, run_record,
                         shapes, stereo_run)
-from evaluation.processes import Failure  # noqa: E402
-from helpers import TestCase, make_record  # noqa: E402
+from evaluation.eth3d import scenes as eth3d_scenes
+from evaluation.processes import Failure
 
 PART = {"coverage": 0.5, "measurement_coverage": 0.5, "median_absolute_error": 1,
         "median_relative_error": None, "tolerances": [
@@ -120,14 +118,14 @@ class DamagedFilesTest(TestCase):
 
     def test_links_to_another_tool_s_results_do_not_replace_damaged_ones(self):
         self.write("x", "data", "images", "a.jpg")
-        one = benchmark.Benchmark("s", self.path("data"), methods=[])
+        one = experiment.Experiment("s", self.path("data"), methods=[])
         one.compare = [("other", self.write("x", "cloud.ply"))]
         for record, text in ((make_record(), "has results of this program"),
                              ({}, "is damaged: it has no key"),
                              ("half", "is damaged: it is not")):
             kept = self.write("maps", "out", "s", "other-0", "stereo", "map")
             run_record.save(self.path("out/s/other-0"), record)
-            ((folder, message),) = benchmark.run(one, self.path("out"), "bin")
+            ((folder, message),) = experiment.run(one, self.path("out"), "bin")
             self.assertIn(text, message)
             self.assertIn(folder, message)
             self.assertTrue(os.path.exists(kept))

@@ -11,10 +11,9 @@ import unittest
 import cv2
 import numpy as np
 
-SCRIPTS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../scripts")
-sys.path.insert(0, SCRIPTS)
-from evaluation import colmap_model, depth_maps, depth_scans  # noqa: E402
-from evaluation.processes import Failure  # noqa: E402
+from helpers import ROOT
+from evaluation import colmap_model, depth_maps, depth_scans
+from evaluation.processes import Failure
 
 
 def read_ply(path):
@@ -137,7 +136,7 @@ class DepthScans(unittest.TestCase):
     def test_command(self):
         self.write_model()
         self.write_depth("a.png", [[4, 0], [0, 8]])
-        program = os.path.join(SCRIPTS, "evaluation", "depth_scans.py")
+        program = os.path.join(ROOT, "evaluation", "depth_scans.py")
         result = subprocess.run([program, self.folder, self.out, "--scanners", "a"],
                                 capture_output=True, text=True, check=False)
         self.assertEqual((result.returncode, result.stderr), (0, ""))

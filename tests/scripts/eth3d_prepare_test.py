@@ -9,11 +9,12 @@ import unittest
 
 import numpy as np
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../scripts"))
-from evaluation import (colmap_model, depth_maps, eth3d_prepare, eth3d_scenes,  # noqa: E402
-                        eth3d_submit, run_record)
-from evaluation.processes import Failure  # noqa: E402
-from helpers import make_record  # noqa: E402
+from helpers import make_record
+from evaluation import colmap_model, depth_maps, run_record
+from evaluation.eth3d import prepare as eth3d_prepare
+from evaluation.eth3d import scenes as eth3d_scenes
+from evaluation.eth3d import submit as eth3d_submit
+from evaluation.processes import Failure
 
 UNDISTORTED = colmap_model.Camera("PINHOLE", 150, 100, (100.0, 100.0, 75.0, 50.0))
 # Sees less than the undistorted photograph, and is not centred.

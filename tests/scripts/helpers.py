@@ -1,11 +1,14 @@
-"""What the tests of scripts/evaluation share; these find that package."""
+"""What the tests of the package evaluation share; importing this finds it."""
 
 import os
+import sys
 import tempfile
 import unittest
 
-from evaluation import processes
-from evaluation.methods import METHODS
+ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../..")
+sys.path.insert(0, ROOT)
+from evaluation import processes  # noqa: E402
+from evaluation.methods import METHODS  # noqa: E402
 
 
 class TestCase(unittest.TestCase):

@@ -7,14 +7,15 @@ import os
 import sys
 import unittest
 
-_ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../..")
-sys.path.insert(0, os.path.join(_ROOT, "scripts"))
-from evaluation import (benchmark, eth3d_report, eth3d_scenes,  # noqa: E402
-                        paper_tables, figures, files, pictures, plan,
-                        published, report, results, run_record, tables)
-from evaluation.methods import LABELS, METHODS, TAPA_ABLATION  # noqa: E402
-from evaluation.processes import Failure  # noqa: E402
-from helpers import TestCase, made_with, make_record  # noqa: E402
+from helpers import ROOT, TestCase, made_with, make_record
+from evaluation import (experiment, figures, files, pictures, plan, report, results, run_record,
+                        tables)
+from evaluation.eth3d import report as eth3d_report
+from evaluation.eth3d import scenes as eth3d_scenes
+from evaluation.eth3d import paper_tables
+from evaluation.eth3d import published
+from evaluation.methods import LABELS, METHODS, TAPA_ABLATION
+from evaluation.processes import Failure
 
 
 def depth_part(shares):
@@ -262,7 +263,7 @@ class ReportTest(TestCase):
                      f1={"fused": 0.5, "fused_default": 0.25})
         write_result(self.path("out"), "s", "tapa",
                      failed={"step": "stereo", "message": "it broke"})
-        one = benchmark.Benchmark("s", self.path("s"), tolerances=[0.02],
+        one = experiment.Experiment("s", self.path("s"), tolerances=[0.02],
                                   methods=["plain", "tapa", "paper"])
         text = self.report_of(one, failures=[("x", "it broke"), ("y", "oh")])
         self.assertIn("| COLMAP | 25.0 / 50.0 / 33.3 | - |", text)
@@ -283,7 +284,7 @@ class ReportTest(TestCase):
         write_result(self.path("out"), "s", "plain", 3, made_with={
             "stereo": [made_with(gpu="NVIDIA X"), made_with("COLMAP 3.9")],
             "fused": [made_with("COLMAP 3.9")]})
-        one = benchmark.Benchmark("s", self.path("s"), methods=["plain"], seeds=[3])
+        one = experiment.Experiment("s", self.path("s"), methods=["plain"], seeds=[3])
         self.assertIn(
             "Run with COLMAP 3.8; COLMAP 3.9 on abacus, 2 cores, 8 GB, stereo on "
             "NVIDIA X; the CPU. Not made in one piece, by one version on one "
@@ -296,21 +297,21 @@ class ReportTest(TestCase):
 
     def test_names_with_spaces(self):
         write_result(self.path("out"), "a b", "plain", depth={(0.02, "m"): 0.25})
-        text = self.report_of(benchmark.Benchmark("a b", self.path("s"),
+        text = self.report_of(experiment.Experiment("a b", self.path("s"),
                                                   methods=["plain"]))
         self.assertIn("](figures/a%20b_errors.png)", text)
 
     def test_another_tool_s_maps_of_some_photographs(self):
         write_result(self.path("out"), "s", "other", depth={(0.02, "m"): 0.25},
                      compare=["x"], views=3, photographs=4)
-        text = self.report_of(benchmark.Benchmark(
+        text = self.report_of(experiment.Experiment(
             "s", self.path("s"), methods=[], compare=[("other", "x")]))
         self.assertIn("- s: other: maps of 3 of 4 photographs", text)
 
     def test_results_of_other_options_are_left_out(self):
         write_result(self.path("out"), "s", "plain", depth={(0.02, "m"): 0.25},
                      options=["--PatchMatchStereo.num_iterations", "1"])
-        one = benchmark.Benchmark("s", self.path("s"), methods=["plain"])
+        one = experiment.Experiment("s", self.path("s"), methods=["plain"])
         text = self.report_of(one)
         self.assertIn("plain, seed 0: the results in OUT were made with other "
                       "options", text)
@@ -390,7 +391,7 @@ class PlanTest(TestCase):
         self.assertEqual(missing, ["- two: plain, seed 0: not run",
                                    "- two: tapa, seed 0: not run"])
         text = self.read("out", "results.md")
-        self.assertIn("# Results\n\nWords.\n\n## First\n\n    scripts/benchmark "
+        self.assertIn("# Results\n\nWords.\n\n## First\n\n    scripts/evaluate "
                       "DATA/s --out OUT/one --methods plain", text)
         self.assertIn("| COLMAP | 25.0 / 50.0 / 33.3 |", text)
         self.assertIn("(images/x/one_errors.png)", text)
@@ -449,8 +450,8 @@ class PlanTest(TestCase):
             plan.Plan(self.path("none.toml"), self.folder, "/none")
 
     def test_the_project_s_own(self):
-        made = plan.Plan(os.path.join(_ROOT, "docs", "results_plan.toml"), None,
-                         _ROOT)
+        made = plan.Plan(os.path.join(ROOT, "docs", "results_plan.toml"), None,
+                         ROOT)
         self.assertEqual(made.sets["room"].views, ["room_05.jpg"])
         for one in made.sets.values():
             self.assertLessEqual(set(one.methods), set(METHODS))

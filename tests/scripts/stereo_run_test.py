@@ -11,12 +11,10 @@ import threading
 import time
 import unittest
 
-_ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../..")
-sys.path.insert(0, os.path.join(_ROOT, "scripts"))
-from evaluation import (benchmark, cloud_scores, depth_scores, files,  # noqa: E402
-                        links, machine, processes, run_record, stereo_run)
-from evaluation.processes import Failure  # noqa: E402
-from helpers import TestCase  # noqa: E402
+from helpers import ROOT, TestCase
+from evaluation import (cloud_scores, depth_scores, experiment, files, links, machine, processes,
+                        run_record, stereo_run)
+from evaluation.processes import Failure
 
 # Makes a depth map of 4x3 pixels for each photograph, a PLY, or fails if asked.
 _COLMAP = r"""#!/bin/sh
@@ -318,7 +316,7 @@ class FilesTest(TestCase):
     def test_a_lock_keeps_others_out(self):
         folder = self.path("new")
         script = ("import sys\n"
-                  f"sys.path.insert(0, {os.path.join(_ROOT, 'scripts')!r})\n"
+                  f"sys.path.insert(0, {ROOT!r})\n"
                   "from evaluation import files\n"
                   f"files.lock({folder!r}, sys.argv[1])\n")
 
@@ -526,7 +524,7 @@ class LinksTest(TestCase):
 
 class BenchmarkRunTest(TestCase):
     def test_whatever_fails_does_not_stop_the_others(self):
-        one = benchmark.Benchmark("s", self.path("data"), methods=["plain", "tapa"])
+        one = experiment.Experiment("s", self.path("data"), methods=["plain", "tapa"])
         done = []
 
         def complete(run):
@@ -536,7 +534,7 @@ class BenchmarkRunTest(TestCase):
 
         self.addCleanup(setattr, stereo_run, "complete", stereo_run.complete)
         stereo_run.complete = complete
-        failures = benchmark.run(one, self.path("out"), self.path("bin"))
+        failures = experiment.run(one, self.path("out"), self.path("bin"))
         self.assertEqual(failures, [
             (self.path("out", "s", "plain-0"), "ValueError: two lines")])
         self.assertEqual(done, ["tapa"])
@@ -548,7 +546,7 @@ class PackageTest(unittest.TestCase):
                   "find = importlib.util.find_spec\n"
                   "importlib.util.find_spec = (\n"
                   "    lambda name: None if name == 'matplotlib' else find(name))\n"
-                  f"sys.path.insert(0, {os.path.join(_ROOT, 'scripts')!r})\n"
+                  f"sys.path.insert(0, {ROOT!r})\n"
                   "import evaluation.tables\n")
         result = subprocess.run([sys.executable, "-B", "-c", script], text=True,
                                 stderr=subprocess.PIPE, check=False)
@@ -562,57 +560,57 @@ class BenchmarkCheckTest(TestCase):
         for name in "ab":
             write(self.path("data", "images", name + ".jpg"))
             write(self.path("maps", name + ".jpg.geometric.bin"), "4&3&1&")
-        one = benchmark.Benchmark("data", self.path("data"))
+        one = experiment.Experiment("data", self.path("data"))
         folder = self.path("out", "x-0")
         for count in (2, 1):
-            benchmark.take_comparison(one, folder, "x", [self.path("maps")])
+            experiment.take_comparison(one, folder, "x", [self.path("maps")])
             self.assertEqual(run_record.load(folder)["views"], count)
             os.remove(self.path("maps", "ab"[count - 1] + ".jpg.geometric.bin"))
 
     def test_bad_data_and_comparisons(self):
         data = self.path("data")
-        one = benchmark.Benchmark("data", data)
+        one = experiment.Experiment("data", data)
         for part, text in (("images/a.jpg", "no folder images"),
                            ("sparse/x", "no folder sparse"),
                            ("gt_depth/a.png", "neither gt_depth/ nor a MeshLab")):
             with self.assertRaisesRegex(Failure, text):
-                benchmark.check(one)
+                experiment.check(one)
             write(os.path.join(data, part))
         with self.assertRaisesRegex(Failure, "fewer than two photographs"):
-            benchmark.check(one)
+            experiment.check(one)
         write(os.path.join(data, "images", "c.jpg"))
-        benchmark.check(one)
+        experiment.check(one)
         os.rename(os.path.join(data, "gt_depth/a.png"),
                   os.path.join(data, "gt_depth/x.png"))
         with self.assertRaisesRegex(Failure, "no depth of any .* such as a.png"):
-            benchmark.check(one)
+            experiment.check(one)
         os.rename(os.path.join(data, "gt_depth/x.png"),
                   os.path.join(data, "gt_depth/a.png"))
         one.views = ["b.jpg"]
         with self.assertRaisesRegex(Failure, "no photograph b.jpg"):
-            benchmark.check(one)
+            experiment.check(one)
         for name, path, text in (("tapa", data, "under this name"),
                                  ("a/b", data, "under this name"),
                                  ("x", self.path("none"), "there is no"),
                                  ("x", write(self.path("f.txt")), "neither")):
             with self.assertRaisesRegex(Failure, text):
-                benchmark.check_comparison(name, path)
+                experiment.check_comparison(name, path)
 
     def test_the_command_of_a_benchmark(self):
         self.assertEqual(
-            benchmark.command_text(benchmark.Benchmark(
+            experiment.command_text(experiment.Experiment(
                 "x", "/somewhere/fountain", methods=["plain"], seeds=[0, 2],
                 every=4, tolerances=[0.5], options=["--a", "1"])),
-            "scripts/benchmark DATA/fountain --out OUT/x --methods plain --seeds 0,2 "
+            "scripts/evaluate DATA/fountain --out OUT/x --methods plain --seeds 0,2 "
             "--every 4 --tolerances 0.5 -- --a 1")
         self.assertIn(
             "--tolerances 0.1234567,5,1e-05 --relative_tolerances 0.3333333333333333",
-            benchmark.command_text(benchmark.Benchmark(
+            experiment.command_text(experiment.Experiment(
                 "x", "/x", tolerances=[0.1234567, 5.0, 1e-05],
                 relative_tolerances=[1 / 3])))
         self.assertEqual(
-            benchmark.command_text(benchmark.Benchmark("y", "/somewhere/y")),
-            "scripts/benchmark DATA/y --out OUT")
+            experiment.command_text(experiment.Experiment("y", "/somewhere/y")),
+            "scripts/evaluate DATA/y --out OUT")
 
 
 class MachineTest(unittest.TestCase):

@@ -16,7 +16,7 @@ _DEPTH_SCANS = os.path.join(os.path.dirname(os.path.abspath(__file__)),
 
 
 @dataclasses.dataclass
-class Benchmark:
+class Experiment:
     """What is compared on one set of photographs.
 
     Runs stand in OUT/NAME/METHOD-SEED. data has images/, sparse/ and gt_depth/
@@ -53,49 +53,49 @@ class Benchmark:
                 + [(value, "%") for value in self.relative_tolerances])
 
 
-def command_text(benchmark):
+def command_text(experiment):
     """What to type for this on a command line; DATA is the data sets' folder."""
-    words = ["scripts/benchmark"]
-    inside = os.path.basename(os.path.normpath(benchmark.data))
+    words = ["scripts/evaluate"]
+    inside = os.path.basename(os.path.normpath(experiment.data))
     # Sets with the same photographs must not share a folder of results.
     words += ["examples/room" if inside == "room" else f"DATA/{inside}",
-              "--out", "OUT" if inside == benchmark.name
-              else f"OUT/{benchmark.name}"]
+              "--out", "OUT" if inside == experiment.name
+              else f"OUT/{experiment.name}"]
     for key in ("methods", "seeds", "sources", "every", "tolerances",
                 "relative_tolerances"):
-        value = getattr(benchmark, key)
-        if value != getattr(Benchmark("", ""), key):
+        value = getattr(experiment, key)
+        if value != getattr(Experiment("", ""), key):
             values = value if isinstance(value, list) else [value]
             words += ["--" + key, ",".join(
                 one if isinstance(one, str) else processes.number_text(one)
                 for one in values)]
-    return " ".join(words + (["--", *benchmark.options]
-                             if benchmark.options else []))
+    return " ".join(words + (["--", *experiment.options]
+                             if experiment.options else []))
 
 
-def check(benchmark):
+def check(experiment):
     """Raises Failure if this cannot be run."""
     for part in ("images", "sparse"):
-        if not os.path.isdir(os.path.join(benchmark.data, part)):
-            raise Failure(f"{benchmark.data} has no folder {part}")
-    if not (has_depth(benchmark) or own_scans(benchmark)):
-        raise Failure(f"{benchmark.data} has neither gt_depth/ nor a MeshLab "
+        if not os.path.isdir(os.path.join(experiment.data, part)):
+            raise Failure(f"{experiment.data} has no folder {part}")
+    if not (has_depth(experiment) or own_scans(experiment)):
+        raise Failure(f"{experiment.data} has neither gt_depth/ nor a MeshLab "
                       "project in scans/, so that nothing can be scored")
-    photographs = links.photographs(benchmark.data, benchmark.every)
+    photographs = links.photographs(experiment.data, experiment.every)
     if len(photographs) < 2:
-        raise Failure(f"{benchmark.data}/images has fewer than two photographs "
+        raise Failure(f"{experiment.data}/images has fewer than two photographs "
                       "to use")
-    truth = os.path.join(benchmark.data, "gt_depth")
-    if has_depth(benchmark) and not any(
+    truth = os.path.join(experiment.data, "gt_depth")
+    if has_depth(experiment) and not any(
             depth_maps.find(truth, name) for name in photographs):
         stem = os.path.splitext(photographs[0])[0]
         raise Failure(f"{truth} has no depth of any photograph that takes part, "
                       f"such as {stem}.png")
-    for name, path in benchmark.compare:
+    for name, path in experiment.compare:
         check_comparison(name, path)
-    for view in benchmark.views:
+    for view in experiment.views:
         if view not in photographs:
-            raise Failure(f"{benchmark.data}/images has no photograph {view} "
+            raise Failure(f"{experiment.data}/images has no photograph {view} "
                           "that takes part")
 
 
@@ -109,49 +109,49 @@ def check_comparison(name, path):
         raise Failure(f"{path} is neither a folder of depth maps nor a PLY")
 
 
-def has_depth(benchmark):
-    return os.path.isdir(os.path.join(benchmark.data, "gt_depth"))
+def has_depth(experiment):
+    return os.path.isdir(os.path.join(experiment.data, "gt_depth"))
 
 
-def own_scans(benchmark):
+def own_scans(experiment):
     """The MeshLab project of scans that comes with a set, "" if none does."""
-    folder = os.path.join(benchmark.data, "scans")
+    folder = os.path.join(experiment.data, "scans")
     projects = sorted(name for name in (
         os.listdir(folder) if os.path.isdir(folder) else [])
         if name.endswith(".mlp"))
     return os.path.join(folder, projects[0]) if projects else ""
 
 
-def stereo_runs(benchmark, out, bin_dir):
+def stereo_runs(experiment, out, bin_dir):
     """The runs of all methods and seeds."""
     return [stereo_run.Run(
-        data=benchmark.data, set=benchmark.name, method=method, seed=seed,
-        folder=benchmark.folder(out, stereo_run.folder_name(method, seed)),
-        options=list(benchmark.options), sources=benchmark.sources,
-        every=benchmark.every, bin_dir=bin_dir)
-        for seed in benchmark.seeds for method in benchmark.methods]
+        data=experiment.data, set=experiment.name, method=method, seed=seed,
+        folder=experiment.folder(out, stereo_run.folder_name(method, seed)),
+        options=list(experiment.options), sources=experiment.sources,
+        every=experiment.every, bin_dir=bin_dir)
+        for seed in experiment.seeds for method in experiment.methods]
 
 
 class Scorer:
     """Scores what is in the folders of one set."""
 
-    def __init__(self, benchmark, out, bin_dir, evaluator=None):
+    def __init__(self, experiment, out, bin_dir, evaluator=None):
         """evaluator: of points; None: points are not scored."""
-        self._benchmark = benchmark
+        self._experiment = experiment
         self._out = out
         self._bin_dir = bin_dir
         self._evaluator = evaluator
         self._scans = None
 
     def score_depth(self, folder):
-        if has_depth(self._benchmark):
+        if has_depth(self._experiment):
             depth_scores.score(
-                folder, os.path.join(self._benchmark.data, "gt_depth"),
+                folder, os.path.join(self._experiment.data, "gt_depth"),
                 tolerances=sorted({*depth_scores.TOLERANCES,
-                                   *self._benchmark.tolerances}),
+                                   *self._experiment.tolerances}),
                 relative_tolerances=sorted({
                     *depth_scores.RELATIVE_TOLERANCES,
-                    *self._benchmark.relative_tolerances}),
+                    *self._experiment.relative_tolerances}),
                 bin_dir=self._bin_dir)
 
     def score_clouds(self, folder):
@@ -162,25 +162,25 @@ class Scorer:
         project, options = self._find_scans()
         cloud_scores.score(
             folder, names, project, self._evaluator,
-            sorted({*cloud_scores.TOLERANCES, *self._benchmark.tolerances}),
+            sorted({*cloud_scores.TOLERANCES, *self._experiment.tolerances}),
             options)
 
     def _find_scans(self):
         """The MeshLab project, and options of the evaluator that go with it."""
         if self._scans is None:
-            own = own_scans(self._benchmark)
+            own = own_scans(self._experiment)
             self._scans = (own, []) if own else self._make_scans()
         return self._scans
 
     def _make_scans(self):
         """What scanners at the cameras would have measured."""
-        folder = self._benchmark.folder(self._out, "scans")
+        folder = self._experiment.folder(self._out, "scans")
         project = os.path.join(folder, "scan_alignment.mlp")
         if (not os.path.exists(project)
-                or depth_scans.are_of_other_data(self._benchmark.data, folder)):
+                or depth_scans.are_of_other_data(self._experiment.data, folder)):
             processes.say(f"{folder}: scans from measured depth ...")
             try:
-                depth_scans.make_scans(self._benchmark.data, folder)
+                depth_scans.make_scans(self._experiment.data, folder)
             except ValueError as error:
                 raise Failure(str(error)) from error
         return project, _beam_options(folder)
@@ -194,25 +194,25 @@ def _beam_options(folder):
             if about else "(as scans.json says)"]
 
 
-def run(benchmark, out, bin_dir, evaluator=None):
+def run(experiment, out, bin_dir, evaluator=None):
     """Does what is missing. What fails is recorded, and the others go on.
 
     Returns a list of (folder, message) of what failed. Raises Interrupted.
     """
-    scorer = Scorer(benchmark, out, bin_dir, evaluator)
+    scorer = Scorer(experiment, out, bin_dir, evaluator)
     failures = []
-    for one in stereo_runs(benchmark, out, bin_dir):
+    for one in stereo_runs(experiment, out, bin_dir):
         _attempt(failures, one.folder,
                  [("stereo", lambda one=one: stereo_run.complete(one)),
                   ("depth scores", lambda one=one: scorer.score_depth(one.folder)),
                   ("cloud scores",
                    lambda one=one: scorer.score_clouds(one.folder))])
-    for name in dict(benchmark.compare):
-        folder = benchmark.folder(out, stereo_run.folder_name(name, 0))
-        paths = [path for other, path in benchmark.compare if other == name]
+    for name in dict(experiment.compare):
+        folder = experiment.folder(out, stereo_run.folder_name(name, 0))
+        paths = [path for other, path in experiment.compare if other == name]
         _attempt(failures, folder, [
             ("comparison",
-             lambda: take_comparison(benchmark, folder, name, paths)),
+             lambda: take_comparison(experiment, folder, name, paths)),
             ("depth scores", lambda: _has_maps(folder)
              and scorer.score_depth(folder)),
             ("cloud scores", lambda: scorer.score_clouds(folder))])
@@ -241,10 +241,10 @@ def _has_maps(folder):
     return os.path.isdir(os.path.join(folder, "stereo"))
 
 
-def take_comparison(benchmark, folder, name, paths):
+def take_comparison(experiment, folder, name, paths):
     """Links what another tool made into a folder of results."""
     paths = [os.path.abspath(path) for path in paths]
-    photographs = links.photographs(benchmark.data, benchmark.every)
+    photographs = links.photographs(experiment.data, experiment.every)
     record = run_record.load(folder)
     if record is not None and "compare" not in record:
         raise Failure(f"{folder} has results of this program, which are no links "
@@ -254,7 +254,7 @@ def take_comparison(benchmark, folder, name, paths):
     # The other tool may have made maps of fewer photographs since.
     shutil.rmtree(os.path.join(folder, "stereo"), ignore_errors=True)
     os.makedirs(folder, exist_ok=True)
-    record = {"set": benchmark.name, "method": name, "seed": 0, "options": [],
+    record = {"set": experiment.name, "method": name, "seed": 0, "options": [],
               "fusion_options": {}, "compare": paths, "done": [],
               "failed": None, "views": None, "image_size": None,
               "photographs": len(photographs), "made_with": {},
@@ -262,7 +262,7 @@ def take_comparison(benchmark, folder, name, paths):
     for path in paths:
         if os.path.isdir(path):
             links.make_view_workspace(
-                benchmark.data, path, folder, photographs)
+                experiment.data, path, folder, photographs)
             record["views"], record["image_size"] = (
                 stereo_run.describe_maps(folder))
         else:
@@ -270,21 +270,21 @@ def take_comparison(benchmark, folder, name, paths):
     run_record.save(folder, record)
 
 
-def missing_commands(benchmark, out, bin_dir, evaluator=None):
+def missing_commands(experiment, out, bin_dir, evaluator=None):
     """The commands that run() would execute for the methods, in order."""
     commands = []
-    scans, options = own_scans(benchmark), []
+    scans, options = own_scans(experiment), []
     if evaluator is not None and not scans:
-        folder = benchmark.folder(out, "scans")
+        folder = experiment.folder(out, "scans")
         scans = os.path.join(folder, "scan_alignment.mlp")
         options = _beam_options(folder)
         if not os.path.exists(scans):
-            commands.append([_DEPTH_SCANS, benchmark.data, folder])
-    for one in stereo_runs(benchmark, out, bin_dir):
+            commands.append([_DEPTH_SCANS, experiment.data, folder])
+    for one in stereo_runs(experiment, out, bin_dir):
         commands += stereo_run.missing_commands(one)
-        if has_depth(benchmark) and depth_scores.load(one.folder) is None:
+        if has_depth(experiment) and depth_scores.load(one.folder) is None:
             commands.append(depth_scores.command(
-                one.folder, os.path.join(benchmark.data, "gt_depth"),
+                one.folder, os.path.join(experiment.data, "gt_depth"),
                 one.path("depth_scores.json"), bin_dir=bin_dir))
         if evaluator is None or cloud_scores.load(one.folder):
             continue

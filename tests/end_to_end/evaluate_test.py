@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Every switch of scripts/benchmark, on three small views of the example."""
+"""Every switch of scripts/evaluate, on three small views of the example."""
 
 import csv
 import json
@@ -27,7 +27,7 @@ class BenchmarkTest(tiny.TestCase):
 
     def run_script(self, *arguments, bin_dir=BIN_DIR):
         return subprocess.run(
-            [os.path.join(SCRIPTS, "benchmark"), *arguments],
+            [os.path.join(SCRIPTS, "evaluate"), *arguments],
             stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
             stderr=subprocess.PIPE, text=True, timeout=600, check=False,
             env=dict(os.environ, TAPA_BIN_DIR=bin_dir))
@@ -169,7 +169,7 @@ class BenchmarkTest(tiny.TestCase):
         slow = self.wrapper("patch_match*", "touch " + self.path("started")
                             + "; exec sleep 60")
         with subprocess.Popen(
-                [os.path.join(SCRIPTS, "benchmark"), ROOM, "--out",
+                [os.path.join(SCRIPTS, "evaluate"), ROOM, "--out",
                  self.path("out"), *SMALL, "--methods", "plain", "--no_clouds",
                  "--", *FAST], stderr=subprocess.PIPE, text=True,
                 env=dict(os.environ, TAPA_BIN_DIR=slow)) as process:

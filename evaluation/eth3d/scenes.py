@@ -7,9 +7,9 @@ Multi-Camera Videos", CVPR 2017. The names are those of the benchmark's public s
 import os
 from dataclasses import dataclass
 
-from . import files
-from .methods import FUSION_HIGH, FUSION_LOW
-from .processes import Failure
+from .. import files
+from ..methods import FUSION_HIGH, FUSION_LOW
+from ..processes import Failure
 
 # Where the archives are. Everything else here is relative to it.
 BASE_URL = "https://www.eth3d.net/data"

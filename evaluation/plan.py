@@ -8,7 +8,7 @@
     [sets.NAME]                   # results in OUT/NAME/METHOD-SEED
     data = "office_entrance"      # in the folder of data sets, or in the repository
     methods = ["plain", "tapa"]
-    seeds = [0, 1, 2]             # and so on: see benchmark.Benchmark
+    seeds = [0, 1, 2]             # and so on: see experiment.Experiment
     num_views = 1                 # of pictures, where no views are named
 
     [[section]]
@@ -25,7 +25,7 @@ import os
 import re
 import tomllib
 
-from . import benchmark, files, pictures, report
+from . import experiment, files, pictures, report
 from .methods import METHODS
 from .processes import Failure
 
@@ -88,7 +88,7 @@ class Plan:
             values = dict(values, data=_find_data(values["data"], data_folder,
                                                   root))
             count = values.pop("num_views", 0)
-            self.sets[name] = one = benchmark.Benchmark(name=name, **values)
+            self.sets[name] = one = experiment.Experiment(name=name, **values)
             if not one.views and os.path.isdir(one.data):
                 one.views = pictures.choose_views(one.data, one.every, count)
         for section in content.get("section", []):
@@ -143,7 +143,7 @@ class Plan:
             os.path.join(folder, self._content.get("images", "images")),
             os.path.join(out, "tables"), bin_dir)
         with_command = section.get("command", True)
-        parts = [f"    {benchmark.command_text(self.sets[one.name])}\n"
+        parts = [f"    {experiment.command_text(self.sets[one.name])}\n"
                  ] if with_command else []
         if not made.found:
             return parts + [f"*`{one.name}` has not been run.*\n"]

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Makes laser scans from depth maps: what a scanner at a camera's place would measure.
 
-    scripts/evaluation/depth_scans.py DATA OUT [--scanners NAMES | --every N]
+    evaluation/depth_scans.py DATA OUT [--scanners NAMES | --every N]
                                       [--voxel_size METRES] [--max_depth METRES]
 
 DATA has sparse/ (a COLMAP text model) and gt_depth/ (see examples/room/README.md). One

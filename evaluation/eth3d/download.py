@@ -10,8 +10,9 @@ import sys
 import urllib.request
 from dataclasses import dataclass
 
-from . import eth3d_scenes, files, processes
-from .processes import Failure
+from .. import files, processes
+from . import scenes as eth3d_scenes
+from ..processes import Failure
 
 TIMEOUT = 60  # Seconds without an answer.
 

@@ -8,13 +8,12 @@ import subprocess
 
 from .processes import Failure
 
-_ROOT = os.path.dirname(os.path.dirname(os.path.dirname(
-    os.path.abspath(__file__))))
+ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 
 
 def default_bin_dir():
     """Where the programs are: TAPA_BIN_DIR, or build/bin."""
-    return os.environ.get("TAPA_BIN_DIR") or os.path.join(_ROOT, "build", "bin")
+    return os.environ.get("TAPA_BIN_DIR") or os.path.join(ROOT, "build", "bin")
 
 
 def find_program(bin_dir, name):
@@ -84,8 +83,8 @@ def program_version(bin_dir):
     version = words[0].split(" -- ")[0] if words else "COLMAP"
     if len(words) > 1 and words[1].startswith("("):
         version += " " + words[1]
-    if os.path.realpath(bin_dir).startswith(os.path.realpath(_ROOT) + os.sep):
-        commit = _output(["git", "-C", _ROOT, "describe", "--always", "--dirty",
+    if os.path.realpath(bin_dir).startswith(os.path.realpath(ROOT) + os.sep):
+        commit = _output(["git", "-C", ROOT, "describe", "--always", "--dirty",
                           "--abbrev=12"]).strip()
         if commit:
             version += f", commit {commit}"

@@ -1,4 +1,4 @@
-"""What the command lines of scripts/benchmark and scripts/eth3d share."""
+"""What the command lines of scripts/evaluate and scripts/eth3d share."""
 
 import argparse
 import signal
@@ -72,7 +72,7 @@ def run(main):
     """The exit status of a program: what main() returns, unless it fails."""
     # As by Ctrl-C, so that running programs end in order.
     signal.signal(signal.SIGTERM, signal.default_int_handler)
-    # Ends in silence where nobody reads on, as in "scripts/benchmark ... | head".
+    # Ends in silence where nobody reads on, as in "scripts/evaluate ... | head".
     signal.signal(signal.SIGPIPE, signal.SIG_DFL)
     try:
         return main()

@@ -11,8 +11,8 @@ import os
 
 import numpy as np
 
-from . import colmap_model, depth_maps, files, processes
-from .processes import Failure
+from .. import colmap_model, depth_maps, files, processes
+from ..processes import Failure
 
 MODEL_FILES = ("cameras.txt", "images.txt", "points3D.txt")
 MAX_POSE_DIFFERENCE = 1e-3  # Metres, and entries of the rotation.

@@ -2,9 +2,10 @@
 
 import os
 
-from . import (benchmark, eth3d_scenes, paper_tables, figures, files, links,
-               published, report, results)
-from .methods import ABLATION, TAPA_ABLATION
+from .. import experiment, figures, files, links, report, results
+from . import paper_tables, published
+from . import scenes as eth3d_scenes
+from ..methods import ABLATION, TAPA_ABLATION
 
 _TOLERANCES = published.TABLE2_TOLERANCES
 _PAPER_SCENES = "ETH3D's 13 training scenes of high resolution"
@@ -124,7 +125,7 @@ def _scene_page(folder, runs, sets, scene, methods, seeds, bin_dir):
     """Writes the page of a scene. Returns its path and what is missing."""
     data = os.path.join(sets, scene.set_name)
     views = links.photographs(data)
-    one = benchmark.Benchmark(
+    one = experiment.Experiment(
         name=scene.set_name, data=data, methods=list(methods),
         seeds=list(seeds), options=None, tolerances=list(_TOLERANCES),
         views=views[len(views) // 2:][:1])

@@ -3,8 +3,9 @@
 import os
 import urllib.parse
 
-from . import (depth_scores, paper_tables, figures, files, pictures, results,
+from . import (depth_scores, figures, files, pictures, results,
                run_record, stereo_run, tables)
+from .eth3d import paper_tables
 from .methods import ABLATION, TAPA_ABLATION
 from .processes import Failure
 
@@ -26,7 +27,7 @@ GLOSSARY = """\
 class SetReport:
     """Tables, figures and pictures of one set, as Markdown.
 
-    Runs with other options than the benchmark's do not get into it, unless those
+    Runs with other options than the experiment's do not get into it, unless those
     are None.
 
     Tables go to csv_folder, too, and figures to image_folder; page_folder is
@@ -34,12 +35,12 @@ class SetReport:
     where there is nothing to show.
     """
 
-    def __init__(self, benchmark, out, page_folder, image_folder,
+    def __init__(self, experiment, out, page_folder, image_folder,
                  csv_folder=None, bin_dir=None):
-        self.benchmark = benchmark
+        self.experiment = experiment
         self.found, self._others = _split(
-            results.load_set(out, benchmark.name), benchmark)
-        self._methods = benchmark.shown_methods()
+            results.load_set(out, experiment.name), experiment)
+        self._methods = experiment.shown_methods()
         self._page = page_folder
         self._images = image_folder
         self._csv = csv_folder
@@ -59,7 +60,7 @@ class SetReport:
         if not self._any(lambda run: run.depth):
             return ""
         return self._table(name, tables.depth_table(
-            self.found, self._methods, self.benchmark.shown_tolerances(),
+            self.found, self._methods, self.experiment.shown_tolerances(),
             bound))
 
     def cost(self):
@@ -77,7 +78,7 @@ class SetReport:
         for name in ("fused", "fused_default"):
             if self._any(lambda run, name=name: name in run.clouds):
                 text.append(self._table("points_" + name, tables.cloud_table(
-                    self.found, self._methods, self.benchmark.tolerances,
+                    self.found, self._methods, self.experiment.tolerances,
                     name)))
         return "\n".join(text)
 
@@ -89,7 +90,7 @@ class SetReport:
                     self._any(lambda run: "fused" in run.clouds)):
                 text.append(self._table("ablation_" + family[-1],
                                         paper_tables.table2(
-                    [self.found], family, place=" on " + self.benchmark.name)))
+                    [self.found], family, place=" on " + self.experiment.name)))
         return "\n".join(text)
 
     def errors(self):
@@ -100,12 +101,12 @@ class SetReport:
 
     def pictures(self):
         text = []
-        for view in self.benchmark.views:
+        for view in self.experiment.views:
             stem = os.path.splitext(view)[0].replace(os.sep, "_")
             path = self._image(f"{stem}.jpg")
             try:
                 caption = pictures.draw_comparison(
-                    path, self.benchmark.data, self.found, self._methods, view,
+                    path, self.experiment.data, self.found, self._methods, view,
                     self._bin_dir)
             except Failure as error:
                 text.append(f"*There is no picture of {view}: {error}*\n")
@@ -139,11 +140,11 @@ class SetReport:
     def missing(self):
         """What has no result, a line each."""
         lines = []
-        for method in self.benchmark.methods:
+        for method in self.experiment.methods:
             runs = {run.record["seed"]: run
                     for run in self.found.get(method, [])}
-            for seed in self.benchmark.seeds:
-                name = f"{self.benchmark.name}: {method}, seed {seed}"
+            for seed in self.experiment.seeds:
+                name = f"{self.experiment.name}: {method}, seed {seed}"
                 if (method, seed) in self._others:
                     lines.append(f"- {name}: the results in OUT were made with "
                                  "other options or photographs")
@@ -153,16 +154,16 @@ class SetReport:
                     lines.append(f"- {name}: {runs[seed].failure}")
                 elif "stereo" not in runs[seed].record["done"]:
                     lines.append(f"- {name}: not finished")
-        for method in dict(self.benchmark.compare):
+        for method in dict(self.experiment.compare):
             for run in self.found.get(method, []):
                 if run.failure:
-                    lines.append(f"- {self.benchmark.name}: {method}: "
+                    lines.append(f"- {self.experiment.name}: {method}: "
                                  f"{run.failure}")
                 views, all_views = (run.record[key] for key in (
                     "views", "photographs"))
                 if views is not None and views < all_views:
                     lines.append(
-                        f"- {self.benchmark.name}: {method}: maps of {views} of "
+                        f"- {self.experiment.name}: {method}: maps of {views} of "
                         f"{all_views} photographs; its scores are of these alone")
         return lines
 
@@ -173,18 +174,18 @@ class SetReport:
     def _table(self, name, table):
         if self._csv:
             files.write_text(
-                os.path.join(self._csv, f"{self.benchmark.name}_{name}.csv"),
+                os.path.join(self._csv, f"{self.experiment.name}_{name}.csv"),
                 table.csv())
         return table.markdown()
 
     def _image(self, name):
-        return os.path.join(self._images, f"{self.benchmark.name}_{name}")
+        return os.path.join(self._images, f"{self.experiment.name}_{name}")
 
     def _figure(self, name, draw):
         path = self._image(name + ".png")
         caption = draw(path, self.found,
                        figures.chosen_methods(self._methods),
-                       self.benchmark.name)
+                       self.experiment.name)
         return self._embed(path, caption) if caption else ""
 
     def _embed(self, path, caption):
@@ -193,16 +194,16 @@ class SetReport:
         return f"![{title}]({link})\n\n{caption}\n"
 
 
-def _split(found, benchmark):
-    """The runs that are those of a benchmark, and the names of others."""
+def _split(found, experiment):
+    """The runs that are those of a experiment, and the names of others."""
     kept, others = {}, set()
     for method, runs in found.items():
         for run in runs:
             record = run.record
-            if (benchmark.options is None or "compare" in record
+            if (experiment.options is None or "compare" in record
                     or stereo_run.is_record_of(
-                        record, benchmark.options, benchmark.sources,
-                        benchmark.every)):
+                        record, experiment.options, experiment.sources,
+                        experiment.every)):
                 kept.setdefault(method, []).append(run)
             else:
                 others.add((method, record["seed"]))
@@ -229,14 +230,14 @@ def machine_text(machine):
     return text
 
 
-def describe_set(benchmark):
+def describe_set(experiment):
     """What was done to get the results of a set, in one paragraph."""
-    text = f"Photographs of `{os.path.basename(os.path.normpath(benchmark.data))}`"
-    if benchmark.every > 1:
-        text += f", one in {benchmark.every}"
-    text += f", {benchmark.sources} source views"
-    if benchmark.options:
-        text += f", `{' '.join(benchmark.options)}`"
+    text = f"Photographs of `{os.path.basename(os.path.normpath(experiment.data))}`"
+    if experiment.every > 1:
+        text += f", one in {experiment.every}"
+    text += f", {experiment.sources} source views"
+    if experiment.options:
+        text += f", `{' '.join(experiment.options)}`"
     return text + ".\n"
 
 
@@ -245,7 +246,7 @@ def write_report(path, reports, title, failures=(), notes=()):
     parts = [f"# {title}\n", "How to read this page:\n", GLOSSARY]
     parts += [note + "\n" for note in notes]
     for one in reports:
-        parts += [f"## {one.benchmark.name}\n", describe_set(one.benchmark),
+        parts += [f"## {one.experiment.name}\n", describe_set(one.experiment),
                   one.provenance()]
         parts += [one.block(kind) for kind in BLOCKS]
     missing = [line for one in reports for line in one.missing()]

@@ -15,7 +15,7 @@ import os
 from . import files, machine, processes, run_record
 from .methods import FUSION_HIGH, METHODS
 
-_SCRIPTS = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+_SCRIPTS = os.path.join(machine.ROOT, "scripts")
 
 # Options of stereo_fusion by the name of the cloud, FOLDER/NAME.ply.
 FUSIONS = {"fused": FUSION_HIGH, "fused_default": []}

@@ -9,9 +9,9 @@ import os
 import re
 import shutil
 
-from . import files, processes, run_record
-from .eth3d_download import seven_zip
-from .processes import Failure
+from .. import files, processes, run_record
+from .download import seven_zip
+from ..processes import Failure
 
 
 def check_cloud(path):

@@ -1,8 +1,9 @@
 """The tables of the TAPA-MVS paper, with its published figures beside ours."""
 
-from . import published, results
-from .methods import ABLATION, label
-from .tables import Table, percent, tolerance_text
+from .. import results
+from ..methods import ABLATION, label
+from . import published
+from ..tables import Table, percent, tolerance_text
 
 
 def _own_cell(sets, method, cloud):
