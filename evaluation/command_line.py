@@ -5,7 +5,7 @@ import signal
 import sys
 
 from . import processes
-from .methods import METHODS
+from .experiment import check_method
 
 
 class Parser(argparse.ArgumentParser):
@@ -49,23 +49,22 @@ def whole_number(least):
     """A parser of one whole number that is not smaller."""
     def parse(text):
         if not (text.isdecimal() and least <= int(text) < 1e9):
-            raise argparse.ArgumentTypeError(
-                f"'{text}' is not a whole number from {least} on")
+            raise argparse.ArgumentTypeError(f"'{text}' is not a whole number from {least} on")
         return int(text)
     return parse
 
 
 def method(text):
     """A parser of the name of a method."""
-    if text not in METHODS:
-        raise argparse.ArgumentTypeError(
-            f"there is no method {text}; there are " + ", ".join(METHODS))
-    return text
+    try:
+        return check_method(text)
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from error
 
 
 def methods(text):
     """A parser of the names of methods."""
-    return [method(name) for name in texts(text)]
+    return list(map(method, texts(text)))
 
 
 def run(main):

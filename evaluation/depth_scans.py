@@ -1,8 +1,7 @@
 #!/usr/bin/python3
 """Makes laser scans from depth maps: what a scanner at a camera's place would measure.
 
-    evaluation/depth_scans.py DATA OUT [--scanners NAMES | --every N]
-                                      [--voxel_size METRES] [--max_depth METRES]
+    evaluation/depth_scans.py DATA OUT [--scanners NAMES] [--voxel_size METRES]
 
 DATA has sparse/ (a COLMAP text model) and gt_depth/ (see examples/room/README.md). One
 file OUT/scanN.ply per scanner and OUT/scan_alignment.mlp, a MeshLab project with their
@@ -22,26 +21,33 @@ would have to be to leave no gaps (evaluate_point_cloud --beam_divergence_halfan
 import argparse
 import os
 import sys
+from typing import Optional
 
 import numpy as np
 
 if not __package__:  # Started as a program.
     sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
-from evaluation import colmap_model, depth_maps, files
+from evaluation import colmap_model, depth_maps, files, schemas
 from evaluation.processes import Failure
 
 # From a camera's frame (x right, y down, z forward) to the scanner's.
 SCANNER_FROM_CAMERA = np.array(((0., 0., 1.), (-1., 0., 0.), (0., -1., 0.)))
 
 
-def scan_points(view, depth, max_depth=np.inf):
+class About(schemas.Model):
+    """scans.json. made_from: a fingerprint of depth and poses."""
+    beam_divergence_halfangle_deg: schemas.Number
+    made_from: Optional[schemas.Text]
+
+
+def scan_points(view, depth):
     """Points, (n, 3), in the scanner's frame of the pixels of a depth map.
 
     The map may be smaller or larger than the photograph, not of another shape.
     """
     height, width = depth.shape
     scale = (view.camera.width / width, view.camera.height / height)
-    rows, columns = np.nonzero((depth > 0) & (depth <= max_depth))
+    rows, columns = np.nonzero(depth > 0)
     u, v = colmap_model.unproject(view.camera, (columns + 0.5) * scale[0],
                                   (rows + 0.5) * scale[1])
     z = depth[rows, columns].astype(np.float64)
@@ -96,10 +102,10 @@ def write_project(path, scans):
     files.write_text(path, "\n".join(lines) + "\n")
 
 
-def choose_scanners(views, names=None, every=1):
-    """The views that are scanners: those named, or every n-th one."""
+def choose_scanners(views, names=None):
+    """The views that are scanners: those named, or all."""
     if names is None:
-        return views[::every]
+        return views
     known = {}
     for view in views:
         for key in (view.name, os.path.splitext(os.path.basename(view.name))[0]):
@@ -111,12 +117,12 @@ def choose_scanners(views, names=None, every=1):
     return [known[name] for name in names]
 
 
-def make_scans(data, out, names=None, every=1, voxel_size=0.0, max_depth=np.inf):
+def make_scans(data, out, names=None, voxel_size=0.0):
     """Writes the scans of a data set. Returns the path of the MeshLab project.
 
     Raises Failure if the data cannot be used; the project is written last.
     """
-    views = choose_scanners(colmap_model.read_views(os.path.join(data, "sparse")), names, every)
+    views = choose_scanners(colmap_model.read_views(os.path.join(data, "sparse")), names)
     measured = [(view, depth_maps.find(os.path.join(data, "gt_depth"), view.name))
                 for view in views]
     missing = [view.name for view, path in measured if not path]
@@ -128,7 +134,7 @@ def make_scans(data, out, names=None, every=1, voxel_size=0.0, max_depth=np.inf)
         if not path:
             continue
         depth = depth_maps.read(path)
-        points = scan_points(view, depth, max_depth)
+        points = scan_points(view, depth)
         if voxel_size > 0:
             points = thin(points, voxel_size)
         if len(points) == 0:
@@ -154,14 +160,13 @@ def _source(data):
 
 def read_about(out):
     """What OUT/scans.json says, None where there is none."""
-    return files.read_json(os.path.join(out, "scans.json"), {
-        "beam_divergence_halfangle_deg": float, "made_from?": str})
+    return files.read_json(os.path.join(out, "scans.json"), About)
 
 
 def are_of_other_data(data, out):
     """Whether scans are not of the depth and the poses that a data set has now."""
-    about = read_about(out) or {}
-    return about.get("made_from", _source(data)) != _source(data)
+    about = read_about(out)
+    return about is not None and about.made_from not in (None, _source(data))
 
 
 def main():
@@ -169,17 +174,13 @@ def main():
     parser.add_argument("data")
     parser.add_argument("out")
     parser.add_argument("--scanners", help="names of photographs, separated by commas")
-    parser.add_argument("--every", type=int, default=1)
     parser.add_argument("--voxel_size", type=float, default=0.0)
-    parser.add_argument("--max_depth", type=float, default=np.inf)
     arguments = parser.parse_args()
-    if arguments.every < 1 or arguments.voxel_size < 0 or not arguments.max_depth > 0:
-        sys.exit("ERROR: --every must be at least 1, --voxel_size not negative and "
-                 "--max_depth positive")
+    if arguments.voxel_size < 0:
+        sys.exit("ERROR: --voxel_size must not be negative")
     names = arguments.scanners.split(",") if arguments.scanners else None
     try:
-        print(make_scans(arguments.data, arguments.out, names, arguments.every,
-                         arguments.voxel_size, arguments.max_depth))
+        print(make_scans(arguments.data, arguments.out, names, arguments.voxel_size))
     except (OSError, Failure) as error:
         sys.exit(f"ERROR: {error}")
 

@@ -1,29 +1,36 @@
 """Files that appear under their name only when they are complete."""
 
+import contextlib
 import fcntl
 import json
 import os
 import zlib
 
-from . import shapes
+from . import schemas
 from .processes import Failure
 
 
-def write_bytes(path, *parts):
-    """Writes the parts one after the other. Raises Failure if it cannot."""
+@contextlib.contextmanager
+def replacing(path):
+    """Gives a name to write to, which becomes path unless something fails."""
     new = path + ".new"
     try:
         os.makedirs(os.path.dirname(path) or ".", exist_ok=True)
         try:
-            with open(new, "wb") as file:
-                for part in parts:
-                    file.write(part)
+            yield new
             os.replace(new, path)
         finally:
-            if os.path.exists(new):
+            if os.path.lexists(new):
                 os.remove(new)
     except OSError as error:
         raise Failure(f"{path} cannot be written: {error.strerror}") from error
+
+
+def write_bytes(path, *parts):
+    """Writes the parts one after the other. Raises Failure if it cannot."""
+    with replacing(path) as new, open(new, "wb") as file:
+        for part in parts:
+            file.write(part)
 
 
 def write_text(path, text):
@@ -31,25 +38,25 @@ def write_text(path, text):
 
 
 def write_json(path, value):
+    """value: plain data or a model."""
+    if isinstance(value, schemas.Model):
+        value = value.dict()
     write_text(path, json.dumps(value, indent=2, ensure_ascii=False) + "\n")
 
 
-def read_json(path, shape=None):
-    """The content of a file, None where there is none.
+def read_json(path, model=None):
+    """The content of a file as a model (schemas.py) or plain; None where there is none.
 
-    shape: what it must be (shapes.py). Raises Failure if it is not.
+    Raises Failure if it cannot be read or is not of the model.
     """
     try:
         with open(path, encoding="utf-8") as file:
             content = json.load(file)
-        if shape is not None:
-            shapes.check(path, content, shape)
-        return content
     except (FileNotFoundError, NotADirectoryError):
         return None
     except (OSError, ValueError) as error:
-        raise Failure(f"{path} cannot be read ({error}); remove it to make it "
-                      "anew") from error
+        raise Failure(f"{path} cannot be read ({error}); remove it to make it anew") from error
+    return content if model is None else schemas.check(content, model, path)
 
 
 def lock(folder, name):
@@ -67,8 +74,8 @@ def lock(folder, name):
         fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError as error:
         file.close()
-        raise Failure(f"another {name} is at work in {folder}; wait until it ends, "
-                      "or name another folder") from error
+        raise Failure(f"another {name} is at work in {folder}; wait until it ends, or name "
+                      "another folder") from error
     return file
 
 
@@ -88,17 +95,18 @@ def fingerprint(*paths):
 def is_newer(path, *sources):
     """Whether a file exists and is newer than its sources; "" is none."""
     return os.path.exists(path) and all(
-        not source or os.path.getmtime(source) < os.path.getmtime(path)
-        for source in sources)
+        not source or os.path.getmtime(source) < os.path.getmtime(path) for source in sources)
+
+
+def names_below(folder):
+    """Names of the files in a folder and below, relative to it, in order."""
+    return sorted((os.path.relpath(os.path.join(parent, name), folder)
+                   for parent, _, names in os.walk(folder, followlinks=True)
+                   for name in names), key=os.fsencode)
 
 
 def _files_in(path):
-    """Names of the files in a folder, in order; "" for a file."""
-    if os.path.isfile(path):
-        return [""]
-    return sorted((os.path.relpath(os.path.join(folder, name), path)
-                   for folder, _, names in os.walk(path, followlinks=True)
-                   for name in names), key=os.fsencode)
+    return [""] if os.path.isfile(path) else names_below(path)
 
 
 def _sample(path, name, count=8, block=4096):

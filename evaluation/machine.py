@@ -7,6 +7,7 @@ import re
 import subprocess
 
 from .processes import Failure
+from .record import Machine
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 
@@ -33,21 +34,14 @@ def _first(path, pattern):
 
 
 def describe():
-    """{"cpu", "cores", "memory_bytes", "gpu", "system"}.
-
-    cores are those that this process may use. gpu is None; which one a program
-    computes on is known when it has said so: see gpus_in().
-    """
+    """This machine. Which GPU a program computes on is known when it has said so: gpus_in()."""
     memory = _first("/proc/meminfo", r"^MemTotal:\s*(\d+) kB")
-    return {
-        "cpu": (_first("/proc/cpuinfo", r"^model name\s*:\s*(.*)$")
-                or platform.processor() or platform.machine()),
-        "cores": len(os.sched_getaffinity(0)),
-        "memory_bytes": 1024 * int(memory) if memory else None,
-        "gpu": None,
-        "system": (_first("/etc/os-release", r'^PRETTY_NAME="?([^"\n]*)')
-                   or platform.system()),
-    }
+    return Machine(
+        cpu=(_first("/proc/cpuinfo", r"^model name\s*:\s*(.*)$")
+             or platform.processor() or platform.machine()),
+        cores=len(os.sched_getaffinity(0)),
+        memory_bytes=1024 * int(memory) if memory else None, gpu=None,
+        system=_first("/etc/os-release", r'^PRETTY_NAME="?([^"\n]*)') or platform.system())
 
 
 def gpus_in(lines):
@@ -67,10 +61,8 @@ def gpus_in(lines):
 
 def _output(command):
     try:
-        result = subprocess.run(command, stdin=subprocess.DEVNULL,
-                                stdout=subprocess.PIPE,
-                                stderr=subprocess.DEVNULL, text=True,
-                                check=False)
+        result = subprocess.run(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                                stderr=subprocess.DEVNULL, text=True, check=False)
     except OSError:
         return ""
     return result.stdout if result.returncode == 0 else ""

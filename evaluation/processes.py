@@ -29,6 +29,10 @@ class Usage:
     cpu_seconds: float
     peak_memory_bytes: int
 
+    def __add__(self, other):
+        return Usage(self.seconds + other.seconds, self.cpu_seconds + other.cpu_seconds,
+                     max(self.peak_memory_bytes, other.peak_memory_bytes))
+
 
 class ProgramFailed(Failure):
     """A program did not end well. It took usage."""
@@ -53,6 +57,11 @@ def command_text(command):
 def number_text(value):
     """A number for a command, which reads it back exactly."""
     return repr(value).removesuffix(".0")
+
+
+def list_text(values):
+    """Numbers or texts for a command."""
+    return ",".join(value if isinstance(value, str) else number_text(value) for value in values)
 
 
 def say(text):

@@ -3,8 +3,7 @@
 import os
 import urllib.parse
 
-from . import (depth_scores, figures, files, pictures, results,
-               run_record, stereo_run, tables)
+from . import depth_scores, figures, files, pictures, record, results, stereo_run, tables
 from .eth3d import paper_tables
 from .methods import ABLATION, TAPA_ABLATION
 from .processes import Failure
@@ -31,16 +30,16 @@ class SetReport:
     are None.
 
     Tables go to csv_folder, too, and figures to image_folder; page_folder is
-    where the page will stand, which links to them. Every method returns ""
-    where there is nothing to show.
+    where the page will stand, which links to them. Every block is "" where there
+    is nothing to show.
     """
 
-    def __init__(self, experiment, out, page_folder, image_folder,
-                 csv_folder=None, bin_dir=None):
+    def __init__(self, experiment, out, page_folder, image_folder, csv_folder=None,
+                 bin_dir=None):
         self.experiment = experiment
-        self.found, self._others = _split(
-            results.load_set(out, experiment.name), experiment)
+        self.by_method, self._others = _split(results.load_set(out, experiment.name), experiment)
         self._methods = experiment.shown_methods()
+        self._runs = [run for method in self._methods for run in self.by_method.get(method, [])]
         self._page = page_folder
         self._images = image_folder
         self._csv = csv_folder
@@ -57,40 +56,35 @@ class SetReport:
         return self._depth("low_texture", depth_scores.LOW_TEXTURE)
 
     def _depth(self, name, bound):
-        if not self._any(lambda run: run.depth):
+        if not any(run.depth for run in self._runs):
             return ""
         return self._table(name, tables.depth_table(
-            self.found, self._methods, self.experiment.shown_tolerances(),
-            bound))
+            self.by_method, self._methods, self.experiment.shown_tolerances(), bound))
 
     def cost(self):
-        return self._table("cost", tables.cost_table(self.found, self._methods))
+        return self._table("cost", tables.cost_table(self.by_method, self._methods))
 
     def clouds(self):
         """With the same thresholds for all methods, and with COLMAP's own."""
         text = []
-        others = results.evaluators(
-            run for method in self._methods
-            for run in self.found.get(method, [])) - {"evaluate_point_cloud"}
+        others = results.evaluators(self._runs) - {"evaluate_point_cloud"}
         if others:
             text.append("Points were scored by " + ", ".join(
                 f"`{name}`" for name in sorted(others)) + ".\n")
-        for name in ("fused", "fused_default"):
-            if self._any(lambda run, name=name: name in run.clouds):
+        for name in stereo_run.FUSIONS:
+            if any(name in run.clouds for run in self._runs):
                 text.append(self._table("points_" + name, tables.cloud_table(
-                    self.found, self._methods, self.experiment.tolerances,
-                    name)))
+                    self.by_method, self._methods, self.experiment.tolerances, name)))
         return "\n".join(text)
 
     def ablation(self):
         """The paper's Table 2, of those families of methods that are shown."""
         text = []
         for family in (ABLATION, TAPA_ABLATION):
-            if any(method in self._methods for method in family[1:-1]) and (
-                    self._any(lambda run: "fused" in run.clouds)):
-                text.append(self._table("ablation_" + family[-1],
-                                        paper_tables.table2(
-                    [self.found], family, place=" on " + self.experiment.name)))
+            if (not set(family[1:-1]).isdisjoint(self._methods)
+                    and any("fused" in run.clouds for run in self._runs)):
+                text.append(self._table("ablation_" + family[-1], paper_tables.table2(
+                    [self.by_method], family, place=" on " + self.experiment.name)))
         return "\n".join(text)
 
     def errors(self):
@@ -102,11 +96,10 @@ class SetReport:
     def pictures(self):
         text = []
         for view in self.experiment.views:
-            stem = os.path.splitext(view)[0].replace(os.sep, "_")
-            path = self._image(f"{stem}.jpg")
+            path = self._image(os.path.splitext(view)[0].replace(os.sep, "_") + ".jpg")
             try:
                 caption = pictures.draw_comparison(
-                    path, self.experiment.data, self.found, self._methods, view,
+                    path, self.experiment.data, self.by_method, self._methods, view,
                     self._bin_dir)
             except Failure as error:
                 text.append(f"*There is no picture of {view}: {error}*\n")
@@ -117,21 +110,17 @@ class SetReport:
 
     def provenance(self):
         """Versions and machines of the runs, in one paragraph."""
-        runs = [run for method in self._methods
-                for run in self.found.get(method, [])]
-        parts = [part for run in runs for part in run_record.parts(run.record)
-                 if part]
-        if not parts:
+        makers = [maker for run in self._runs for maker in run.record.makers() if maker]
+        if not makers:
             return ""
-        versions = sorted({part["version"] for part in parts})
-        machines = sorted({machine_text(part["machine"]) for part in parts})
+        versions = sorted({maker.version for maker in makers})
+        machines = sorted({_machine_text(maker.machine) for maker in makers})
         text = f"Run with {'; '.join(versions)} on {'; '.join(machines)}"
-        gpus = set().union(*(run_record.stereo_gpus(run.record) for run in runs))
+        gpus = {gpu for run in self._runs for gpu in run.record.stereo_gpus()}
         if gpus - {None}:
-            text += ", stereo on " + "; ".join(sorted(
-                gpu or "the CPU" for gpu in gpus))
-        mixed = [f"{run.method}, seed {run.record['seed']}" for run in runs
-                 if run_record.is_mixed(run.record)]
+            text += ", stereo on " + "; ".join(sorted(gpu or "the CPU" for gpu in gpus))
+        mixed = [f"{run.record.method}, seed {run.record.seed}" for run in self._runs
+                 if run.record.is_mixed()]
         if mixed:
             text += (". Not made in one piece, by one version on one machine: "
                      + "; ".join(mixed))
@@ -139,43 +128,36 @@ class SetReport:
 
     def missing(self):
         """What has no result, a line each."""
-        lines = []
+        name, lines = self.experiment.name, []
         for method in self.experiment.methods:
-            runs = {run.record["seed"]: run
-                    for run in self.found.get(method, [])}
+            runs = {run.record.seed: run for run in self.by_method.get(method, [])}
             for seed in self.experiment.seeds:
-                name = f"{self.experiment.name}: {method}, seed {seed}"
-                if (method, seed) in self._others:
-                    lines.append(f"- {name}: the results in OUT were made with "
-                                 "other options or photographs")
-                elif seed not in runs:
-                    lines.append(f"- {name}: not run")
-                elif runs[seed].failure:
-                    lines.append(f"- {name}: {runs[seed].failure}")
-                elif "stereo" not in runs[seed].record["done"]:
-                    lines.append(f"- {name}: not finished")
+                fault = self._fault(runs.get(seed), (method, seed) in self._others)
+                if fault:
+                    lines.append(f"- {name}: {method}, seed {seed}: {fault}")
         for method in dict(self.experiment.compare):
-            for run in self.found.get(method, []):
+            for run in self.by_method.get(method, []):
+                views, photographs = run.record.views, run.record.photographs
                 if run.failure:
-                    lines.append(f"- {self.experiment.name}: {method}: "
-                                 f"{run.failure}")
-                views, all_views = (run.record[key] for key in (
-                    "views", "photographs"))
-                if views is not None and views < all_views:
-                    lines.append(
-                        f"- {self.experiment.name}: {method}: maps of {views} of "
-                        f"{all_views} photographs; its scores are of these alone")
+                    lines.append(f"- {name}: {method}: {run.failure}")
+                if views is not None and views < photographs:
+                    lines.append(f"- {name}: {method}: maps of {views} of {photographs} "
+                                 "photographs; its scores are of these alone")
         return lines
 
-    def _any(self, condition):
-        return any(condition(run) for method in self._methods
-                   for run in self.found.get(method, []))
+    @staticmethod
+    def _fault(run, has_other):
+        """What is missing of a run, None if nothing is."""
+        if has_other:
+            return "the results in OUT were made with other options or photographs"
+        if run is None:
+            return "not run"
+        return run.failure or (None if "stereo" in run.record.done else "not finished")
 
     def _table(self, name, table):
         if self._csv:
-            files.write_text(
-                os.path.join(self._csv, f"{self.experiment.name}_{name}.csv"),
-                table.csv())
+            files.write_text(os.path.join(self._csv, f"{self.experiment.name}_{name}.csv"),
+                             table.csv())
         return table.markdown()
 
     def _image(self, name):
@@ -183,30 +165,26 @@ class SetReport:
 
     def _figure(self, name, draw):
         path = self._image(name + ".png")
-        caption = draw(path, self.found,
-                       figures.chosen_methods(self._methods),
+        caption = draw(path, self.by_method, figures.chosen_methods(self._methods),
                        self.experiment.name)
         return self._embed(path, caption) if caption else ""
 
     def _embed(self, path, caption):
-        link = link_to(path, self._page)
         title = caption.split("**")[1].rstrip(".")
-        return f"![{title}]({link})\n\n{caption}\n"
+        return f"![{title}]({link_to(path, self._page)})\n\n{caption}\n"
 
 
-def _split(found, experiment):
-    """The runs that are those of a experiment, and the names of others."""
+def _split(by_method, experiment):
+    """The runs that are those of an experiment, and the names of others."""
     kept, others = {}, set()
-    for method, runs in found.items():
-        for run in runs:
-            record = run.record
-            if (experiment.options is None or "compare" in record
-                    or stereo_run.is_record_of(
-                        record, experiment.options, experiment.sources,
-                        experiment.every)):
-                kept.setdefault(method, []).append(run)
-            else:
-                others.add((method, record["seed"]))
+    for run in (run for runs in by_method.values() for run in runs):
+        content = run.record
+        if (experiment.options is None or isinstance(content, record.ComparisonRecord)
+                or stereo_run.is_record_of(content, experiment.options, experiment.sources,
+                                           experiment.every)):
+            kept.setdefault(content.method, []).append(run)
+        else:
+            others.add((content.method, content.seed))
     return kept, others
 
 
@@ -215,22 +193,17 @@ def link_to(path, folder):
     return urllib.parse.quote(os.path.relpath(path, folder))
 
 
-BLOCKS = {"depth": SetReport.depth, "low_texture": SetReport.low_texture,
-          "cost": SetReport.cost, "clouds": SetReport.clouds,
-          "ablation": SetReport.ablation, "errors": SetReport.errors,
-          "textureness": SetReport.textureness,
-          "pictures": SetReport.pictures}
+BLOCKS = {name: getattr(SetReport, name) for name in (
+    "depth", "low_texture", "cost", "clouds", "ablation", "errors", "textureness", "pictures")}
 
 
-def machine_text(machine):
+def _machine_text(machine):
     """"AMD EPYC, 2 cores, 25 GB"; not the GPU, as only stereo uses it."""
-    text = f"{machine['cpu']}, {machine['cores']} cores"
-    if machine["memory_bytes"]:
-        text += f", {machine['memory_bytes'] / 1e9:.0f} GB"
-    return text
+    text = f"{machine.cpu}, {machine.cores} cores"
+    return text + (f", {machine.memory_bytes / 1e9:.0f} GB" if machine.memory_bytes else "")
 
 
-def describe_set(experiment):
+def _describe_set(experiment):
     """What was done to get the results of a set, in one paragraph."""
     text = f"Photographs of `{os.path.basename(os.path.normpath(experiment.data))}`"
     if experiment.every > 1:
@@ -241,18 +214,16 @@ def describe_set(experiment):
     return text + ".\n"
 
 
-def write_report(path, reports, title, failures=(), notes=()):
+def write_report(path, reports, failures=(), notes=()):
     """Writes a page with all blocks of all sets."""
-    parts = [f"# {title}\n", "How to read this page:\n", GLOSSARY]
+    parts = ["# Evaluation of dense stereo\n", "How to read this page:\n", GLOSSARY]
     parts += [note + "\n" for note in notes]
-    for one in reports:
-        parts += [f"## {one.experiment.name}\n", describe_set(one.experiment),
-                  one.provenance()]
-        parts += [one.block(kind) for kind in BLOCKS]
-    missing = [line for one in reports for line in one.missing()]
+    for part in reports:
+        parts += [f"## {part.experiment.name}\n", _describe_set(part.experiment),
+                  part.provenance(), *map(part.block, BLOCKS)]
+    missing = [line for part in reports for line in part.missing()]
     known = "\n".join(missing)
-    missing += [f"- {folder}: {message}" for folder, message in failures
-                if message not in known]
+    missing += [f"- {name}: {message}" for name, message in failures if message not in known]
     if missing:
         parts += ["## What is missing\n", "\n".join(missing) + "\n"]
     files.write_text(path, "\n".join(part for part in parts if part))

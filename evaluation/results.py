@@ -7,7 +7,7 @@ import dataclasses
 import os
 import statistics
 
-from . import cloud_scores, depth_scores, run_record
+from . import cloud_scores, depth_scores, record
 
 KEYS = ("completeness", "accuracy", "f1")
 
@@ -16,21 +16,17 @@ KEYS = ("completeness", "accuracy", "f1")
 class Result:
     """One run, or another tool's maps or points."""
     folder: str
-    record: dict
+    record: record.Record
     # None where there are none.
-    depth: dict = None
+    depth: depth_scores.DepthScores
     # By name of the cloud.
-    clouds: dict = dataclasses.field(default_factory=dict)
-
-    @property
-    def method(self):
-        return self.record["method"]
+    clouds: dict
 
     @property
     def failure(self):
         """What went wrong, in one line; None if nothing did."""
-        failed = self.record.get("failed")
-        return failed and f"{failed['step']}: {failed['message']}"
+        failed = self.record.failed
+        return failed and f"{failed.step}: {failed.message}"
 
 
 @dataclasses.dataclass
@@ -45,67 +41,67 @@ class Score:
     count: int
 
 
-def load_result(folder):
-    """The result in a folder, None where there is no record."""
-    record = run_record.load(folder)
-    if record is None:
-        return None
-    return Result(folder, record, depth_scores.load(folder),
-                  cloud_scores.load(folder))
-
-
 def load_set(out, name):
     """All results of a set, by method, in the order of the seeds."""
-    found = {}
+    results = []
     folder = os.path.join(out, name)
     for entry in sorted(os.listdir(folder)) if os.path.isdir(folder) else []:
-        result = load_result(os.path.join(folder, entry))
-        if result is not None:
-            found.setdefault(result.method, []).append(result)
-    for runs in found.values():
-        runs.sort(key=lambda result: result.record["seed"])
-    return found
+        inside = os.path.join(folder, entry)
+        content = record.load(inside)
+        if content is not None:
+            results.append(Result(inside, content, depth_scores.load(inside),
+                                  cloud_scores.load(inside)))
+    by_method = {}
+    for result in sorted(results, key=lambda result: result.record.seed):
+        by_method.setdefault(result.record.method, []).append(result)
+    return by_method
+
+
+def _known(values):
+    return [value for value in values if value is not None]
 
 
 def mean(values):
     """The mean of the values that are known, None if there is none."""
-    known = [value for value in values if value is not None]
+    known = _known(values)
     return statistics.fmean(known) if known else None
 
 
+def median(values):
+    """The median of the values that are known, None if there is none."""
+    known = _known(values)
+    return statistics.median(known) if known else None
+
+
 def _mean_score(entries):
-    entries = [entry for entry in entries
-               if entry is not None and entry["f1"] is not None]
+    entries = [entry for entry in _known(entries) if entry.f1 is not None]
     if not entries:
         return None
-    f1 = [entry["f1"] for entry in entries]
-    return Score(mean(entry["completeness"] for entry in entries),
-                 mean(entry["accuracy"] for entry in entries),
-                 mean(f1), min(f1), max(f1), len(entries))
+    f1 = [entry.f1 for entry in entries]
+    return Score(mean(entry.completeness for entry in entries),
+                 mean(entry.accuracy for entry in entries), mean(f1), min(f1), max(f1),
+                 len(entries))
 
 
-def _parts(runs, bound):
+def _pixel_scores(runs, bound):
     """The scores of all pixels, or of those of textureness below a bound."""
-    for run in runs or []:
-        if run.depth is not None:
-            yield (run.depth["overall"] if bound is None
-                   else depth_scores.below(run.depth, bound))
+    return _known(run.depth.overall if bound is None else run.depth.below(bound)
+                  for run in runs or [] if run.depth)
 
 
 def depth_score(runs, tolerance, unit="m", bound=None):
     """The Score of the depth maps of a method's runs, None if there is none."""
-    return _mean_score([depth_scores.at(part, tolerance, unit)
-                        for part in _parts(runs, bound) if part is not None])
+    return _mean_score([part.at(tolerance, unit) for part in _pixel_scores(runs, bound)])
 
 
 def depth_value(runs, key, bound=None):
     """The mean of another value of the depth scores, such as "coverage"."""
-    return mean(part[key] for part in _parts(runs, bound) if part is not None)
+    return mean(getattr(part, key) for part in _pixel_scores(runs, bound))
 
 
 def cloud_score(runs, tolerance, cloud="fused"):
     """The Score of the points of a method's runs, None if there is none."""
-    return _mean_score([cloud_scores.at(run.clouds[cloud], tolerance)
+    return _mean_score([run.clouds[cloud].at(tolerance)
                         for run in runs or [] if cloud in run.clouds])
 
 
@@ -114,17 +110,13 @@ def mean_over_sets(sets, method, tolerance, cloud="fused"):
 
     sets: what load_set() returns, one for each set. None unless all have one.
     """
-    scores = [cloud_score(found.get(method), tolerance, cloud)
-              for found in sets]
-    if not scores or None in scores:
-        return None
-    return _mean_score([dataclasses.asdict(score) for score in scores])
+    scores = [cloud_score(by_method.get(method), tolerance, cloud) for by_method in sets]
+    return None if None in scores else _mean_score(scores)
 
 
 def evaluators(runs):
     """Names of the programs that scored the points of runs."""
-    return {score["made_from"]["evaluator"] for run in runs
-            for score in run.clouds.values() if "made_from" in score}
+    return {score.made_from.evaluator for run in runs for score in run.clouds.values()}
 
 
 def step_value(runs, measure, step="stereo"):
@@ -132,22 +124,18 @@ def step_value(runs, measure, step="stereo"):
 
     What it took so far in a run that is not complete is not what it takes.
     """
-    values = [run.record.get(measure, {}).get(step) for run in runs or []
-              if step in run.record["done"]]
-    values = [value for value in values if value is not None]
-    return statistics.median(values) if values else None
+    return median(getattr(run.record, measure).get(step) for run in runs or []
+                  if step in run.record.done)
 
 
 def cpu_per_megapixel(runs):
     """Median CPU seconds of stereo per megapixel and view; None: not known."""
     values = []
-    for run in runs or []:
-        seconds = run.record.get("cpu_seconds", {}).get("stereo")
-        size = run.record.get("image_size")
-        if seconds is not None and size and run.record["views"]:
-            values.append(seconds * 1e6
-                          / (run.record["views"] * size[0] * size[1]))
-    return statistics.median(values) if values else None
+    for content in (run.record for run in runs or []):
+        seconds, size = content.cpu_seconds.get("stereo"), content.image_size
+        if seconds is not None and size and content.views:
+            values.append(seconds * 1e6 / (content.views * size[0] * size[1]))
+    return median(values)
 
 
 def pool(sets):
@@ -157,10 +145,9 @@ def pool(sets):
     Methods whose depth maps are not scored on all of the sets are left out, as
     their means would be over others.
     """
-    sets = list(sets)
-    found = {}
-    for method in {method for one in sets for method in one}:
-        runs = [[run for run in one.get(method, []) if run.depth] for one in sets]
+    sets, pooled = list(sets), {}
+    for method in sorted({method for by_method in sets for method in by_method}):
+        runs = [[run for run in by_method.get(method, []) if run.depth] for by_method in sets]
         if all(runs):
-            found[method] = [run for part in runs for run in part]
-    return found
+            pooled[method] = [run for part in runs for run in part]
+    return pooled

@@ -13,6 +13,7 @@ import numpy as np
 
 from .. import colmap_model, depth_maps, files, processes
 from ..processes import Failure
+from ..steps import Step
 
 MODEL_FILES = ("cameras.txt", "images.txt", "points3D.txt")
 MAX_POSE_DIFFERENCE = 1e-3  # Metres, and entries of the rotation.
@@ -72,7 +73,7 @@ def _find_originals(scene_path, scene, views):
     """The views as they were taken, by the names of the undistorted ones."""
     folder = os.path.join(scene_path, scene.track.original_calibration)
     originals = {view.name: view for view in colmap_model.read_views(folder)}
-    found = {}
+    taken = {}
     for view in views:
         original = originals.get(original_name(view.name))
         if original is None:
@@ -82,8 +83,8 @@ def _find_originals(scene_path, scene, views):
         if difference > MAX_POSE_DIFFERENCE:
             raise Failure(f"{folder}: the pose of {original.name} is another than that of "
                              f"{view.name}; unpack both archives of the scene again")
-        found[view.name] = original
-    return found
+        taken[view.name] = original
+    return taken
 
 
 def depth_folder(scene_path, scene):
@@ -161,51 +162,65 @@ def _check_photographs(scene_path, views):
             raise Failure(f"{path} is missing; unpack the scene's undistorted photographs")
 
 
-def prepare(scene, scene_path, out, depth_size=2000):
-    """Makes or completes a set; returns what set.json says of it.
-
-    depth_size: the longest side of gt_depth's maps in pixels, 0: as the photographs.
-    Raises Failure if the scene is not whole. What exists is not made again, unless
-    it was made with another depth_size.
-    """
-    calibration = os.path.join(scene_path, f"{scene.track.tag}_calibration_undistorted")
-    for name in MODEL_FILES:
-        if not os.path.isfile(os.path.join(calibration, name)):
-            raise Failure(f"{calibration} has no {name}; unpack "
-                             f"{scene.archives()[0]} into {os.path.dirname(scene_path)}")
-    views = colmap_model.read_views(calibration)
-    _check_photographs(scene_path, views)
-    scans = os.path.join(scene_path, f"{scene.track.tag}_scan_eval")
-    if os.path.isdir(scans) and not os.path.isfile(os.path.join(scans, "scan_alignment.mlp")):
-        raise Failure(f"{scans} has no scan_alignment.mlp; unpack the scans again")
-    if depth_folder(scene_path, scene):
-        _check_depth_size(out, depth_size)
-
-    for view in views:
-        _link(os.path.join(scene_path, "images", view.name), os.path.join(out, "images", view.name))
-    for name in MODEL_FILES:
-        _link(os.path.join(calibration, name), os.path.join(out, "sparse", name))
-    if os.path.isdir(scans):
-        _link(scans, os.path.join(out, "scans"))
-    count = _prepare_depth(scene_path, scene, views, out, depth_size)
-    if count == 0 and depth_folder(scene_path, scene):
-        processes.say(f"WARNING: {scene.set_name}: no depth map is at "
-                      f"{scene_path}/ground_truth_depth/{original_name(views[0].name)}")
-    content = {"scene": scene.name, "resolution": scene.resolution, "split": scene.split,
-               "photographs": len(views), "scans": os.path.isdir(scans), "depth_maps": count,
-               "depth_size": depth_size, "depth_over_points": _check_depth(calibration, views, out)}
-    files.write_json(os.path.join(out, "set.json"), content)
-    return content
-
-
 def _check_depth_size(out, depth_size):
     """Maps of two sizes are not mixed; depth_size stands beside the first of them."""
     path = os.path.join(out, "gt_depth", "size.txt")
-    if os.path.isfile(path):
-        with open(path, encoding="ascii") as file:
-            before = file.read().strip()
-        if before != str(depth_size):
-            raise Failure(f"{out}/gt_depth was made with --depth_size {before}; remove it "
-                             f"to make it with {depth_size}")
+    if not os.path.isfile(path):
+        files.write_text(path, f"{depth_size}\n")
         return
-    files.write_text(path, f"{depth_size}\n")
+    with open(path, encoding="ascii") as file:
+        before = file.read().strip()
+    if before != str(depth_size):
+        raise Failure(f"{out}/gt_depth was made with --depth_size {before}; remove it "
+                      f"to make it with {depth_size}")
+
+
+class Prepare(Step):
+    """A set, made or completed. What exists in it is not made again."""
+    name = "set"
+
+    def __init__(self, scene, scene_path, out, depth_size=2000):
+        """depth_size: the longest side of gt_depth's maps in pixels, 0: as the photographs."""
+        self._scene = scene
+        self._scene_path = scene_path
+        self._out = out
+        self._depth_size = depth_size
+
+    def commands(self):
+        return [f"# {self._out}: links to {self._scene_path}, gt_depth from "
+                + (depth_folder(self._scene_path, self._scene) or "nothing")]
+
+    def run(self):
+        scene, scene_path, out = self._scene, self._scene_path, self._out
+        calibration = os.path.join(scene_path, f"{scene.track.tag}_calibration_undistorted")
+        for name in MODEL_FILES:
+            if not os.path.isfile(os.path.join(calibration, name)):
+                raise Failure(f"{calibration} has no {name}; unpack {scene.archives()[0]} into "
+                              f"{os.path.dirname(scene_path)}")
+        views = colmap_model.read_views(calibration)
+        _check_photographs(scene_path, views)
+        scans = os.path.join(scene_path, f"{scene.track.tag}_scan_eval")
+        if (os.path.isdir(scans)
+                and not os.path.isfile(os.path.join(scans, "scan_alignment.mlp"))):
+            raise Failure(f"{scans} has no scan_alignment.mlp; unpack the scans again")
+        if depth_folder(scene_path, scene):
+            _check_depth_size(out, self._depth_size)
+
+        for view in views:
+            _link(os.path.join(scene_path, "images", view.name),
+                  os.path.join(out, "images", view.name))
+        for name in MODEL_FILES:
+            _link(os.path.join(calibration, name), os.path.join(out, "sparse", name))
+        if os.path.isdir(scans):
+            _link(scans, os.path.join(out, "scans"))
+        count = _prepare_depth(scene_path, scene, views, out, self._depth_size)
+        if count == 0 and depth_folder(scene_path, scene):
+            processes.say(f"WARNING: {scene.set_name}: no depth map is at "
+                          f"{scene_path}/ground_truth_depth/{original_name(views[0].name)}")
+        files.write_json(os.path.join(out, "set.json"), {
+            "scene": scene.name, "resolution": scene.resolution, "split": scene.split,
+            "photographs": len(views), "scans": os.path.isdir(scans), "depth_maps": count,
+            "depth_size": self._depth_size,
+            "depth_over_points": _check_depth(calibration, views, out)})
+        processes.say(f"{out}: {len(views)} photographs, {count} depth maps, "
+                      f"{'with' if os.path.isdir(scans) else 'without'} scans")

@@ -7,7 +7,7 @@ Multi-Camera Videos", CVPR 2017. The names are those of the benchmark's public s
 import os
 from dataclasses import dataclass
 
-from .. import files
+from .. import files, schemas
 from ..methods import FUSION_HIGH, FUSION_LOW
 from ..processes import Failure
 
@@ -72,31 +72,36 @@ def all_scenes():
             for name in names.split()]
 
 
+def _folders(path):
+    return sorted(os.listdir(path)) if os.path.isdir(path) else []
+
+
 def unpacked_scenes(folder):
     """Scenes whose undistorted photographs are in a folder, known to the site or not."""
-    found = []
-    for name in sorted(os.listdir(folder)) if os.path.isdir(folder) else []:
+    scenes = []
+    splits = {(scene.name, scene.resolution): scene.split for scene in all_scenes()}
+    for name in _folders(folder):
         for resolution, track in TRACKS.items():
-            scene = os.path.join(folder, name)
-            if not os.path.isdir(os.path.join(scene, f"{track.tag}_calibration_undistorted")):
-                continue
-            known = [other.split for other in all_scenes()
-                     if (other.name, other.resolution) == (name, resolution)]
-            has_scans = os.path.isdir(os.path.join(scene, f"{track.tag}_scan_eval"))
-            split = known[0] if known else "training" if has_scans else "test"
-            found.append(Scene(name, resolution, split))
-    return found
+            inside = os.path.join(folder, name, track.tag)
+            if os.path.isdir(inside + "_calibration_undistorted"):
+                split = "training" if os.path.isdir(inside + "_scan_eval") else "test"
+                scenes.append(Scene(name, resolution, splits.get((name, resolution), split)))
+    return scenes
+
+
+class SetDescription(schemas.Model):
+    """set.json, as far as it is read."""
+    scene: schemas.Text
+    resolution: schemas.Text
+    split: schemas.Text
 
 
 def prepared_scenes(folder):
     """Scenes that `prepare` has made sets of, from their set.json."""
-    found = []
-    for name in sorted(os.listdir(folder)) if os.path.isdir(folder) else []:
-        path = os.path.join(folder, name, "set.json")
-        if os.path.isfile(path):
-            content = files.read_json(path, {"scene": str, "resolution": str, "split": str})
-            found.append(Scene(content["scene"], content["resolution"], content["split"]))
-    return found
+    contents = [files.read_json(os.path.join(folder, name, "set.json"), SetDescription)
+                for name in _folders(folder)]
+    return [Scene(content.scene, content.resolution, content.split)
+            for content in contents if content is not None]
 
 
 def select(scenes, resolution="high", split="training", names=None):

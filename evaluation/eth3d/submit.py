@@ -9,9 +9,11 @@ import os
 import re
 import shutil
 
-from .. import files, processes, run_record
-from .download import seven_zip
+from .. import files, processes, record
 from ..processes import Failure
+from ..steps import Step
+from .download import seven_zip
+from .scenes import all_scenes
 
 
 def check_cloud(path):
@@ -28,48 +30,67 @@ def check_cloud(path):
         raise Failure(f"{path} holds no points")
 
 
-def runtime_text(record, cloud):
-    """The content of a scene's text file."""
-    seconds = run_record.total_seconds(record, cloud)
-    if seconds is None:
-        raise Failure("it is not known how long the run took, as part of it was killed or made "
-                      "by another program; remove the run and make it again")
-    return f"runtime {seconds:.3f}\n"
+class AddScene(Step):
+    """A scene's cloud and time in the folder of its track."""
+    name = "submission"
+    is_quick = True
+
+    def __init__(self, folder, scene_name, run_folder, cloud):
+        self._folder = folder
+        self._scene = scene_name
+        self._run = run_folder
+        self._cloud = cloud
+
+    def commands(self):
+        return [f"# {self._folder}/{self._scene}.ply from {self._run}/{self._cloud}.ply"]
+
+    def run(self):
+        content = record.load(self._run)
+        if content is None:
+            raise Failure(f"{self._run} has no run; make it with scripts/eth3d run")
+        source = os.path.join(self._run, self._cloud + ".ply")
+        check_cloud(source)
+        seconds = content.total_seconds(self._cloud)
+        if seconds is None:
+            raise Failure("it is not known how long the run took, as part of it was killed or "
+                          "made by another program; remove the run and make it again")
+        with files.replacing(os.path.join(self._folder, self._scene + ".ply")) as new:
+            try:
+                os.link(source, new)  # Clouds are large.
+            except OSError:
+                shutil.copyfile(source, new)
+        files.write_text(os.path.join(self._folder, self._scene + ".txt"),
+                         f"runtime {seconds:.3f}\n")
 
 
-def add_scene(folder, scene_name, run_folder, cloud):
-    """Puts a scene's cloud and time into the folder of its track."""
-    record = run_record.load(run_folder)
-    if record is None:
-        raise Failure(f"{run_folder} has no run; make it with scripts/eth3d run")
-    source = os.path.join(run_folder, cloud + ".ply")
-    check_cloud(source)
-    text = runtime_text(record, cloud)
-    os.makedirs(folder, exist_ok=True)
-    target = os.path.join(folder, scene_name + ".ply")
-    if os.path.exists(target):
-        os.remove(target)
-    try:
-        os.link(source, target)  # Clouds are large.
-    except OSError:
-        shutil.copyfile(source, target)
-    files.write_text(os.path.join(folder, scene_name + ".txt"), text)
+class Pack(Step):
+    """FOLDER.7z of a track's folder."""
+    name = "archive"
 
+    def __init__(self, folder):
+        self._folder = folder
+        self._new = folder + ".new.7z"
 
-def pack_command(folder):
-    """The command, to be run in the folder above, that packs a track's folder."""
-    name = os.path.basename(folder)
-    return [seven_zip(), "a", "-t7z", "-bd", name + ".new.7z", name]
+    def commands(self):
+        above, name = os.path.split(self._folder)
+        return [["env", "-C", above, seven_zip(), "a", "-t7z", "-bd",
+                 os.path.basename(self._new), name]]
 
+    def run(self):
+        if os.path.exists(self._new):
+            os.remove(self._new)
+        log = self._folder + ".log"
+        processes.run(self.commands()[0], log)
+        os.replace(self._new, self._folder + ".7z")
+        os.remove(log)
+        print(self._folder + ".7z")
+        self._warn_of_missing()
 
-def pack(folder):
-    """Makes FOLDER.7z; returns its path."""
-    above, name = os.path.split(folder)
-    new = os.path.join(above, name + ".new.7z")
-    if os.path.exists(new):
-        os.remove(new)
-    command = ["env", "-C", above, *pack_command(folder)]
-    processes.run(command, os.path.join(above, name + ".log"))
-    os.replace(new, folder + ".7z")
-    os.remove(os.path.join(above, name + ".log"))
-    return folder + ".7z"
+    def _warn_of_missing(self):
+        """The server asks for the scenes of both splits."""
+        track = os.path.basename(self._folder)
+        missing = [scene.name for scene in all_scenes() if scene.track.name == track
+                   and not os.path.exists(os.path.join(self._folder, scene.name + ".ply"))]
+        if missing:
+            processes.say(f"WARNING: {track} is without {len(missing)} of the benchmark's "
+                          f"scenes: {', '.join(missing)}")

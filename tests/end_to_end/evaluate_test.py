@@ -153,7 +153,7 @@ class BenchmarkTest(tiny.TestCase):
         result = self.room("--methods", "tapa,plain", "--no_clouds",
                            bin_dir=broken)
         self.assertEqual(result.returncode, 1)
-        self.assertIn("ERROR: 1 of the runs failed:\n  "
+        self.assertIn("ERROR: 1 of 2 failed:\n  "
                       + self.path("out/room/tapa-0"), result.stderr)
         text = self.read("out/report.md")
         self.assertIn("- room: tapa, seed 0: stereo: patch_match_stereo: no luck",
@@ -192,7 +192,7 @@ class BenchmarkTest(tiny.TestCase):
     def check_others_are_kept_out(self):
         other = self.room("--methods", "tapa", "--no_clouds")
         self.assertEqual(other.returncode, 1)
-        self.assertIn("ERROR: another benchmark is at work in "
+        self.assertIn("ERROR: another evaluation is at work in "
                       + self.path("out") + ";", other.stderr)
         self.assertEqual(other.stderr.count("\n"), 1, other.stderr)
         self.assertFalse(os.path.exists(self.path("out/room/tapa-0")))
