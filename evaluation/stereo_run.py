@@ -67,7 +67,9 @@ class Run:
         return [Stereo(self), *(Fusion(self, name) for name in self.fusions)]
 
     def is_complete(self):
-        return all(step.is_done() for step in self.steps())
+        """Whether all steps were done, with these options or others."""
+        content = record.load(self.folder)
+        return content is not None and {"stereo", *self.fusions} <= set(content.done)
 
     def load_record(self):
         """The record, None where there is none.

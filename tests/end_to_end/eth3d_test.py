@@ -638,7 +638,7 @@ class Pipeline(Case):
         self.assertIn("stereo ...", process.stderr.readline())
         other = self.eth3d("run", "--methods", "plain")
         self.assert_failed(other, f"another eth3d-run is at work in {self.folder};")
-        self.assert_done(self.eth3d("run", "--methods", "plain", "--dry_run"))
+        self.assert_done(self.eth3d("run", "--methods", "plain", "--dry_run", fast=FAST))
         time.sleep(0.5)
         process.send_signal(signal.SIGINT)
         _, errors = process.communicate(timeout=120)
