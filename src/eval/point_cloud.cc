@@ -115,26 +115,38 @@ class BinaryReader : public ValueReader {
   }
 
   void Skip(PlyType type, double count) override {
-    const auto size =
-        static_cast<std::streamsize>(count * static_cast<double>(SizeOf(type)));
-    stream_.ignore(size);
-    if (stream_.gcount() != size) throw Truncated();
+    const double size = count * static_cast<double>(SizeOf(type));
+    const double here = std::min(size, static_cast<double>(end_ - next_));
+    next_ += static_cast<size_t>(here);
+    const auto rest = static_cast<std::streamsize>(size - here);
+    if (rest > 0 && stream_.ignore(rest).gcount() != rest) throw Truncated();
   }
 
  private:
   template <typename T>
   double Load() {
-    unsigned char bytes[sizeof(T)];
-    const auto size = static_cast<std::streamsize>(sizeof(T));
-    // Past the stream's checks, which would take most of the time.
-    if (stream_.rdbuf()->sgetn(reinterpret_cast<char*>(bytes), size) != size) {
-      throw Truncated();
-    }
+    if (end_ - next_ < sizeof(T)) Fill(sizeof(T));
+    next_ += sizeof(T);
     return static_cast<double>(
-        endian::endian_load<T, sizeof(T), kOrder>(bytes));
+        endian::endian_load<T, sizeof(T), kOrder>(&buffer_[next_ - sizeof(T)]));
+  }
+
+  // Reads on, so that there are at least so many bytes.
+  void Fill(size_t size) {
+    std::copy_n(buffer_.data() + next_, end_ - next_, buffer_.data());
+    end_ -= next_;
+    next_ = 0;
+    stream_.read(reinterpret_cast<char*>(&buffer_[end_]),
+                 static_cast<std::streamsize>(buffer_.size() - end_));
+    end_ += static_cast<size_t>(stream_.gcount());
+    if (end_ < size) throw Truncated();
   }
 
   std::istream& stream_;
+  std::array<unsigned char, 65536> buffer_;
+  // What was read and not taken yet.
+  size_t next_ = 0;
+  size_t end_ = 0;
 };
 
 // Reads the points of one file.
@@ -198,7 +210,7 @@ class PointReader {
     }
   }
 
-  // No more elements than this are in the rest of the file, lest a wrong header
+  // No more elements than this are in the file, lest a wrong header
   // ask for all memory.
   uint64_t MostThatFit(const PlyElement& element) {
     uint64_t least_size = 0;
@@ -208,16 +220,13 @@ class PointReader {
               ? 2
               : SizeOf(property.list_size_type.value_or(property.type));
     }
-    const std::streamoff here = stream_.tellg();
-    const std::streamoff end = stream_.seekg(0, std::ios::end).tellg();
-    stream_.seekg(here);
     // The last value of an ascii file may have no character behind it.
-    return static_cast<uint64_t>(end - here + 1) / least_size;
+    return (std::filesystem::file_size(path_) + 1) / least_size;
   }
 
-  // Values of all properties, 0 for lists.
+  // Values of all properties but lists.
   void ReadElement(const PlyElement& element, uint64_t index) {
-    values_.assign(element.properties.size(), 0);
+    values_.resize(element.properties.size());
     reader_->BeginElement();
     for (size_t i = 0; i < values_.size(); ++i) {
       const PlyProperty& property = element.properties[i];
