@@ -4,7 +4,6 @@ Each function writes a PNG and returns its caption as Markdown, or None where th
 nothing to draw; then no file is written. by_method: what results.load_set() returns.
 """
 
-import os
 
 from . import depth_scores, files, results
 from .methods import METHODS, label

@@ -6,6 +6,7 @@
     scripts/eth3d evaluate DIR      # scores beside them
     scripts/eth3d report DIR        # DIR/report: tables, figures and pictures
     scripts/eth3d submit DIR        # DIR/submission: what the benchmark's server takes
+    scripts/eth3d miniature DIR     # DIR/scenes: a small scene to try all of this with
 
 Each goes on where it was stopped. A scene that fails does not stop the others; it is
 named at the end, and the exit status is 1. --dry_run prints every command and does
@@ -23,6 +24,7 @@ from .. import (cloud_scores, command_line, depth_scores, files, methods, record
 from ..processes import Failure
 from ..steps import Job
 from . import download as archives, prepare as sets, scenes, submit as submission
+from .miniature import MakeMiniature
 from .report import Eth3dReport
 
 DEFAULT_METHODS = ["plain", "tapa", *methods.ABLATION[1:]]
@@ -117,16 +119,22 @@ def download(arguments):
         out, arguments.base_url, not arguments.without_depth, arguments.remove_archives)
         if not archive.is_done()]
     archives.seven_zip()
-    failures, found = [], missing
+    failures, answered = [], missing
     if not arguments.dry_run:
         failures = steps.perform(Job(archive.name, [archives.AskSize(archive)])
                                  for archive in missing)
-        found = [archive for archive in missing if archive.size is not None]
-        if found:
-            archives.confirm(found, out, arguments.yes)
-    failures += steps.perform([Job(archive.name, [archive]) for archive in found],
+        answered = [archive for archive in missing if archive.size is not None]
+        if answered:
+            archives.confirm(answered, out, arguments.yes)
+    failures += steps.perform([Job(archive.name, [archive]) for archive in answered],
                               arguments.dry_run)
     return steps.exit_status(failures, len(missing))
+
+
+def miniature(arguments):
+    out = os.path.join(_unpacked(arguments), arguments.scene)
+    return _perform(arguments, [Job(arguments.scene, [MakeMiniature(
+        out, arguments.split, arguments.image_size, arguments.views, arguments.voxel_size)])])
 
 
 def prepare(arguments):
@@ -255,8 +263,20 @@ def _parse(words):
                          help="%(default)s")
     command.add_argument("--cloud", choices=tuple(stereo_run.FUSIONS), default="fused",
                          help="fused with TAPA's or with COLMAP's thresholds (%(default)s)")
+    command = add(miniature, "make a small scene of the built-in example, to try all of this")
+    command.add_argument("dir", metavar="DIR", help="folder for everything")
+    command.add_argument("--scene", default="miniature", help="its name (%(default)s)")
+    command.add_argument("--split", choices=("training", "test"), default="training",
+                         help="with the truth or without (%(default)s)")
+    command.add_argument("--image_size", type=command_line.whole_number(1), default=360,
+                         help="longest side in pixels (%(default)s)")
+    command.add_argument("--views", type=command_line.whole_number(1), default=8,
+                         help="photographs of each track (%(default)s)")
+    command.add_argument("--voxel_size", type=float, default=0.01,
+                         help="metres between points of its scans (%(default)s)")
+    command.set_defaults(unpacked=None, dry_run=False)
     arguments = parser.parse(words)
-    if arguments.options and arguments.function in (download, prepare):
+    if arguments.options and arguments.function in (download, prepare, miniature):
         parser.error("there is nothing to give on behind --")
     arguments.dir = os.path.abspath(arguments.dir)
     return arguments

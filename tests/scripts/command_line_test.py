@@ -4,11 +4,9 @@
 import argparse
 import contextlib
 import io
-import os
-import sys
 import unittest
 
-import helpers  # It finds the package.
+import helpers  # noqa: F401 (it finds the package)
 from evaluation import command_line, processes
 
 

@@ -1,10 +1,6 @@
-#!/usr/bin/python3
-"""Makes a small scene in the layout of ETH3D's archives from the built-in example.
+"""A small scene in the layout of ETH3D's archives, made from the built-in example.
 
-    scripts/miniature_eth3d.py OUT [--scene NAME] [--split training|test]
-                               [--image_size PIXELS] [--views N] [--voxel_size METRES]
-
-OUT/NAME has what the archives of a real scene unpack to, for both tracks (dslr: high
+It has what the archives of a real scene unpack to, for both tracks (dslr: high
 resolution, rig: low): photographs as taken by a lens with ETH3D's THIN_PRISM_FISHEYE
 model, undistorted ones, their calibrations, depth of the former as bare floats (with
 gaps, as a laser scan leaves them), and laser scans of three places with their poses.
@@ -15,18 +11,18 @@ differ in their intrinsics. This is for tests and for trying scripts/eth3d out. 
 figures say nothing about the benchmark.
 """
 
-import argparse
 import os
-import sys
 from dataclasses import dataclass
 
 import cv2
 import numpy as np
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
-from evaluation import colmap_model, depth_maps, depth_scans  # noqa: E402
+from .. import colmap_model, depth_maps, depth_scans, files, machine
+from ..processes import Failure
+from ..steps import Step
+from .scenes import TRACKS, Track
 
-ROOM = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../examples/room")
+ROOM = os.path.join(machine.ROOT, "examples", "room")
 # A lens like that of ETH3D's camera: k1, k2, p1, p2, k3, k4, sx1, sy1.
 LENS = (0.21, 0.2, -1e-5, 5e-4, -0.16, 0.4, -1e-4, 9e-4)
 # The photograph as taken shows a little less than the undistorted one.
@@ -47,8 +43,7 @@ class Photograph:
 @dataclass(frozen=True)
 class Part:
     """One track of the scene."""
-    tag: str
-    original_calibration: str
+    track: Track
     undistorted: list  # Cameras.
     originals: list  # Cameras, as many.
     photographs: list
@@ -58,13 +53,7 @@ class Part:
 def lines_of(name):
     """A file of the example's model without its comments."""
     with open(os.path.join(ROOM, "sparse", name), encoding="utf-8") as file:
-        return [line for line in file.read().split("\n") if line[:1] != "#"]
-
-
-def point_lines():
-    """The example's points without their tracks, in words, by number."""
-    return {int(line.split()[0]): line.split()[:8]
-            for line in lines_of("points3D.txt") if line}
+        return [line for line in file.read().rstrip("\n").split("\n") if line[:1] != "#"]
 
 
 def pinhole(source, size, shift=0.0):
@@ -97,7 +86,7 @@ def dslr_part(views, size, count):
         photographs.append(Photograph(view, 0, f"dslr_images_undistorted/{name}",
                                       f"dslr_images/{name}"))
     undistorted = [pinhole(source, size)]
-    return Part("dslr", "dslr_calibration_jpg", undistorted,
+    return Part(TRACKS["high"], undistorted,
                 [with_lens(camera) for camera in undistorted], photographs, False)
 
 
@@ -110,7 +99,7 @@ def rig_part(views, size, count):
         photographs.append(Photograph(
             view, camera, f"images_rig_cam{4 + camera}_undistorted/{name}",
             f"images_rig_cam{4 + camera}/{name}"))
-    return Part("rig", "rig_calibration", undistorted,
+    return Part(TRACKS["low"], undistorted,
                 [with_lens(camera) for camera in undistorted], photographs, True)
 
 
@@ -149,49 +138,43 @@ def make_depth(depth, camera, source, rng):
     return np.where(inside, depth[row, column], np.inf).astype("<f4")
 
 
-def write_model(folder, cameras, photographs, names, observations, points, source):
+def write_model(folder, cameras, photographs, names, source):
     """A text model with the example's points, seen in these photographs."""
-    os.makedirs(folder, exist_ok=True)
-    tracks, images = {}, []
-    for photograph, name in zip(photographs, names):
-        view, camera = photograph.view, cameras[photograph.camera]
-        seen = observations[view.number]
-        u, v = colmap_model.unproject(source, seen[:, 0], seen[:, 1])
-        x, y = colmap_model.project(camera, u, v)
+    observations = colmap_model.read_observations(os.path.join(ROOM, "sparse"))
+    poses = {int(line.split()[0]): line.split()[:8] for line in lines_of("images.txt")[0::2]}
+    tracks, pixels = {}, {}
+    for photograph in photographs:
+        number, camera = photograph.view.number, cameras[photograph.camera]
+        seen = observations[number]
+        x, y = colmap_model.project(camera, *colmap_model.unproject(source, seen[:, 0],
+                                                                    seen[:, 1]))
         keep = (x >= 0) & (x < camera.width) & (y >= 0) & (y < camera.height)
-        pixels = []
-        for px, py, point in zip(x[keep], y[keep], seen[keep, 2].astype(int)):
-            tracks.setdefault(point, []).append(f"{view.number} {len(pixels)}")
-            pixels.append((px, py, point))
-        images.append((view, photograph.camera, name, pixels))
+        pixels[number] = list(zip(x[keep], y[keep], seen[keep, 2].astype(int)))
+        for index, (_, _, point) in enumerate(pixels[number]):
+            tracks.setdefault(point, []).append(f"{number} {index}")
     tracks = {point: track for point, track in tracks.items() if len(track) >= 2}
-    with open(os.path.join(folder, "cameras.txt"), "w", encoding="utf-8") as file:
-        file.write("# Camera list with one line of data per camera:\n")
-        for number, camera in enumerate(cameras):
-            file.write(f"{number} {camera.model} {camera.width} {camera.height} "
-                       + " ".join(f"{value:.9g}" for value in camera.params) + "\n")
-    with open(os.path.join(folder, "images.txt"), "w", encoding="utf-8") as file:
-        file.write(f"# Number of images: {len(photographs)}\n")
-        for view, camera, name, pixels in images:
-            pose = " ".join(f"{value:.12g}" for value in (*quaternions()[view.number],
-                                                          *view.translation))
-            file.write(f"{view.number} {pose} {camera} {name}\n")
-            file.write(" ".join(f"{x:.3f} {y:.3f} {point if point in tracks else -1}"
-                                for x, y, point in pixels) + "\n")
-    with open(os.path.join(folder, "points3D.txt"), "w", encoding="utf-8") as file:
-        for point in sorted(tracks):
-            file.write(" ".join(points[point]) + " " + " ".join(tracks[point]) + "\n")
+    lines = ["# Camera list with one line of data per camera:"]
+    for number, camera in enumerate(cameras):
+        lines.append(f"{number} {camera.model} {camera.width} {camera.height} "
+                     + " ".join(f"{value:.9g}" for value in camera.params))
+    write_lines(os.path.join(folder, "cameras.txt"), lines)
+    lines = [f"# Number of images: {len(photographs)}"]
+    for photograph, name in zip(photographs, names):
+        number = photograph.view.number
+        lines += [f"{' '.join(poses[number])} {photograph.camera} {name}",
+                  " ".join(f"{x:.3f} {y:.3f} {point if point in tracks else -1}"
+                           for x, y, point in pixels[number])]
+    write_lines(os.path.join(folder, "images.txt"), lines)
+    points = {int(line.split()[0]): line.split()[:8] for line in lines_of("points3D.txt")}
+    write_lines(os.path.join(folder, "points3D.txt"),
+                [" ".join(points[point] + tracks[point]) for point in sorted(tracks)])
 
 
-def quaternions():
-    """Rotations of the example as they stand in its images.txt, by view number."""
-    return {int(line.split()[0]): [float(value) for value in line.split()[1:5]]
-            for line in lines_of("images.txt")[0::2] if line}
+def write_lines(path, lines):
+    files.write_text(path, "\n".join(lines) + "\n")
 
 
 def write_part(out, part, source, is_training, voxel_size):
-    observations = colmap_model.read_observations(os.path.join(ROOM, "sparse"))
-    points = point_lines()
     rng = np.random.default_rng(4)
     for photograph in part.photographs:
         stem = os.path.splitext(photograph.view.name)[0]
@@ -200,52 +183,51 @@ def write_part(out, part, source, is_training, voxel_size):
         depth = depth_maps.read_png(os.path.join(ROOM, "gt_depth", stem + ".png"))
         undistorted = part.undistorted[photograph.camera]
         original = part.originals[photograph.camera]
-        made = {photograph.undistorted_name:
-                blank(make_photograph(image, undistorted, source), undistorted, original)}
+        pictures = {photograph.undistorted_name:
+                    blank(make_photograph(image, undistorted, source), undistorted, original)}
         if is_training:
-            made[photograph.original_name] = make_photograph(image, original, source)
-            path = os.path.join(out, "ground_truth_depth", photograph.original_name)
-            os.makedirs(os.path.dirname(path), exist_ok=True)
-            make_depth(depth, original, source, rng).tofile(path)
-        for name, picture in made.items():
-            path = os.path.join(out, "images", name)
-            os.makedirs(os.path.dirname(path), exist_ok=True)
+            pictures[photograph.original_name] = make_photograph(image, original, source)
+            files.write_bytes(os.path.join(out, "ground_truth_depth", photograph.original_name),
+                              make_depth(depth, original, source, rng).tobytes())
+        for name, picture in pictures.items():
             is_jpeg = name.endswith(".JPG")
-            cv2.imwrite(path, picture, [cv2.IMWRITE_JPEG_QUALITY, 95] if is_jpeg else [])
-    models = [(f"{part.tag}_calibration_undistorted", part.undistorted, "undistorted_name")]
+            _, encoded = cv2.imencode(".jpg" if is_jpeg else ".png", picture,
+                                      [cv2.IMWRITE_JPEG_QUALITY, 95] if is_jpeg else [])
+            files.write_bytes(os.path.join(out, "images", name), encoded.tobytes())
+    models = [(f"{part.track.tag}_calibration_undistorted", part.undistorted,
+               "undistorted_name")]
     if is_training:
-        models.append((part.original_calibration, part.originals, "original_name"))
+        models.append((part.track.original_calibration, part.originals, "original_name"))
     for folder, cameras, key in models:
-        names = [getattr(photograph, key) for photograph in part.photographs]
-        write_model(os.path.join(out, folder), cameras, part.photographs, names, observations,
-                    points, source)
+        write_model(os.path.join(out, folder), cameras, part.photographs,
+                    [getattr(photograph, key) for photograph in part.photographs], source)
     if is_training:
-        depth_scans.make_scans(ROOM, os.path.join(out, f"{part.tag}_scan_eval"), SCANNERS,
-                               voxel_size=voxel_size)
-        os.remove(os.path.join(out, f"{part.tag}_scan_eval", "scans.json"))
+        scans = os.path.join(out, f"{part.track.tag}_scan_eval")
+        depth_scans.make_scans(ROOM, scans, SCANNERS, voxel_size=voxel_size)
+        os.remove(os.path.join(scans, "scans.json"))
 
 
-def main():
-    parser = argparse.ArgumentParser(usage=__doc__)
-    parser.add_argument("out")
-    parser.add_argument("--scene", default="miniature")
-    parser.add_argument("--split", choices=("training", "test"), default="training")
-    parser.add_argument("--image_size", type=int, default=360)
-    parser.add_argument("--views", type=int, default=8)
-    parser.add_argument("--voxel_size", type=float, default=0.01)
-    arguments = parser.parse_args()
-    views = colmap_model.read_views(os.path.join(ROOM, "sparse"))
-    if not 2 <= arguments.views <= len(views) or arguments.image_size < 32:
-        sys.exit(f"ERROR: --views must be 2 to {len(views)} and --image_size at least 32")
-    out = os.path.join(arguments.out, arguments.scene)
-    if os.path.exists(out):
-        sys.exit(f"ERROR: {out} exists already; name another folder or scene")
-    for part in (dslr_part(views, arguments.image_size, arguments.views),
-                 rig_part(views, arguments.image_size * 3 // 4, arguments.views)):
-        write_part(out, part, views[0].camera, arguments.split == "training",
-                   arguments.voxel_size)
-    print(out)
+class MakeMiniature(Step):
+    """A scene in a folder that does not exist yet."""
+    name = "miniature"
 
+    def __init__(self, out, split, image_size, views, voxel_size):
+        self._out = out
+        self._is_training = split != "test"
+        self._image_size = image_size
+        self._num_views = views
+        self._voxel_size = voxel_size
 
-if __name__ == "__main__":
-    main()
+    def commands(self):
+        return [f"# {self._out} from {ROOM}"]
+
+    def run(self):
+        views = colmap_model.read_views(os.path.join(ROOM, "sparse"))
+        if not 2 <= self._num_views <= len(views) or self._image_size < 32:
+            raise Failure(f"--views must be 2 to {len(views)} and --image_size at least 32")
+        if os.path.exists(self._out):
+            raise Failure(f"{self._out} exists already; name another folder or scene")
+        for part in (dslr_part(views, self._image_size, self._num_views),
+                     rig_part(views, self._image_size * 3 // 4, self._num_views)):
+            write_part(self._out, part, views[0].camera, self._is_training, self._voxel_size)
+        print(self._out)
