@@ -25,6 +25,15 @@ class Camera:
     height: int
     params: tuple
 
+    @property
+    def pinhole(self):
+        """Focal lengths and principal point, fx, fy, cx, cy."""
+        return self.params[:1] * (self.model == "SIMPLE_PINHOLE") + self.params[:4]
+
+    def contains(self, x, y):
+        """Which pixels (arrays of one shape) the photograph has; NaN is none."""
+        return (x >= 0) & (x < self.width) & (y >= 0) & (y < self.height)
+
 
 @dataclass(frozen=True)
 class View:
@@ -157,10 +166,7 @@ def _largest_angle(params):
 def project(camera, u, v):
     """Pixels x, y of rays u, v (arrays of one shape); NaN where the model ends."""
     u, v = np.asarray(u, float), np.asarray(v, float)
-    if camera.model == "SIMPLE_PINHOLE":
-        focal, cx, cy = camera.params
-        return focal * u + cx, focal * v + cy
-    fx, fy, cx, cy = camera.params[:4]
+    fx, fy, cx, cy = camera.pinhole
     if camera.model == "THIN_PRISM_FISHEYE":
         radius = np.hypot(u, v)
         angle = np.arctan(radius)
@@ -172,12 +178,8 @@ def project(camera, u, v):
 
 def unproject(camera, x, y):
     """Rays u, v of pixels x, y (arrays of one shape); NaN where there is none."""
-    x, y = np.asarray(x, float), np.asarray(y, float)
-    if camera.model == "SIMPLE_PINHOLE":
-        focal, cx, cy = camera.params
-        return (x - cx) / focal, (y - cy) / focal
-    fx, fy, cx, cy = camera.params[:4]
-    u, v = (x - cx) / fx, (y - cy) / fy
+    fx, fy, cx, cy = camera.pinhole
+    u, v = (np.asarray(x, float) - cx) / fx, (np.asarray(y, float) - cy) / fy
     if camera.model == "THIN_PRISM_FISHEYE":
         u, v = _undo_thin_prism_fisheye(camera.params, u, v)
     return u, v
@@ -208,3 +210,8 @@ def _undo_thin_prism_fisheye(params, u, v):
 def pixel_centres(camera):
     """x and y of the centres of all pixels, each (height, width)."""
     return np.meshgrid(np.arange(camera.width) + 0.5, np.arange(camera.height) + 0.5)
+
+
+def pixel_rays(camera):
+    """Rays of the centres of all pixels, u and v, each (height, width)."""
+    return unproject(camera, *pixel_centres(camera))

@@ -79,7 +79,7 @@ def scanner_to_world(view):
 def beam_halfangle(view, depth):
     """Half the angle in degrees between the rays of neighbouring pixels in the centre."""
     return float(np.degrees(np.arctan(0.5 * view.camera.width / depth.shape[1]
-                                      / view.camera.params[0])))
+                                      / view.camera.pinhole[0])))
 
 
 def write_ply(path, points):

@@ -66,7 +66,7 @@ def pinhole(source, size, shift=0.0):
 
 
 def with_lens(camera):
-    fx, fy, cx, cy = camera.params
+    fx, fy, cx, cy = camera.pinhole
     return colmap_model.Camera(
         "THIN_PRISM_FISHEYE", camera.width, camera.height,
         (ZOOM * fx, ZOOM * fy * 0.999, cx + 0.8, cy - 0.6) + LENS)
@@ -104,9 +104,8 @@ def rig_part(views, size, count):
 
 
 def source_pixels(camera, source):
-    """Where in the example's photograph every pixel of a camera looks: x, y."""
-    return colmap_model.project(
-        source, *colmap_model.unproject(camera, *colmap_model.pixel_centres(camera)))
+    """Where in another camera's photograph every pixel of a camera looks: x, y."""
+    return colmap_model.project(source, *colmap_model.pixel_rays(camera))
 
 
 def make_photograph(image, camera, source):
@@ -122,18 +121,14 @@ def make_photograph(image, camera, source):
 
 def blank(image, undistorted, original):
     """Black where the original photograph shows nothing, as ETH3D has it."""
-    u, v = colmap_model.unproject(undistorted, *colmap_model.pixel_centres(undistorted))
-    x, y = colmap_model.project(original, u, v)
-    seen = (x >= 0) & (x <= original.width) & (y >= 0) & (y <= original.height)
-    image[~seen] = 0
+    image[~original.contains(*source_pixels(undistorted, original))] = 0
     return image
 
 
 def make_depth(depth, camera, source, rng):
     """The example's depth through another camera; infinite without measurement."""
     x, y = source_pixels(camera, source)
-    inside = (x >= 0) & (x < source.width) & (y >= 0) & (y < source.height)
-    inside &= rng.random(x.shape) < MEASURED_SHARE
+    inside = source.contains(x, y) & (rng.random(x.shape) < MEASURED_SHARE)
     column, row = np.where(inside, x, 0).astype(int), np.where(inside, y, 0).astype(int)
     return np.where(inside, depth[row, column], np.inf).astype("<f4")
 
@@ -148,7 +143,7 @@ def write_model(folder, cameras, photographs, names, source):
         seen = observations[number]
         x, y = colmap_model.project(camera, *colmap_model.unproject(source, seen[:, 0],
                                                                     seen[:, 1]))
-        keep = (x >= 0) & (x < camera.width) & (y >= 0) & (y < camera.height)
+        keep = camera.contains(x, y)
         pixels[number] = list(zip(x[keep], y[keep], seen[keep, 2].astype(int)))
         for index, (_, _, point) in enumerate(pixels[number]):
             tracks.setdefault(point, []).append(f"{number} {index}")

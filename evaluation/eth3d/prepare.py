@@ -39,7 +39,7 @@ def _scaled(camera, size):
     width = max(1, round(camera.width * factor))
     height = max(1, round(camera.height * factor))
     x, y = width / camera.width, height / camera.height
-    fx, fy, cx, cy = camera.params
+    fx, fy, cx, cy = camera.pinhole
     return colmap_model.Camera("PINHOLE", width, height, (fx * x, fy * y, cx * x, cy * y))
 
 
@@ -49,10 +49,8 @@ def sampled_pixels(original, undistorted):
     Index into the original's pixels row by row, (height, width) of the undistorted
     camera; -1 where the ray is outside the original photograph.
     """
-    u, v = colmap_model.unproject(undistorted, *colmap_model.pixel_centres(undistorted))
-    x, y = colmap_model.project(original, u, v)
-    with np.errstate(invalid="ignore"):
-        inside = (x >= 0) & (x < original.width) & (y >= 0) & (y < original.height)
+    x, y = colmap_model.project(original, *colmap_model.pixel_rays(undistorted))
+    inside = original.contains(x, y)
     column = np.where(inside, x, 0).astype(np.int64)
     row = np.where(inside, y, 0).astype(np.int64)
     return np.where(inside, row * original.width + column, -1)
