@@ -1,7 +1,6 @@
 #include "src/eval/depth_map_io.h"
 
 #include <algorithm>
-#include <boost/endian/buffers.hpp>
 #include <cctype>
 #include <cmath>
 #include <cstdint>
@@ -12,6 +11,10 @@
 #include <vector>
 
 #include "src/pictures/image_io.h"
+
+// Values are copied as they stand in the file.
+static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__,
+              "maps are stored in little-endian order");
 
 namespace tapa {
 namespace {
@@ -57,13 +60,10 @@ RawMap ReadRawMap(const std::string& path, int channels) {
         std::to_string(found) + " bytes of values where size " + size +
         " needs " + std::to_string(expected));
   }
-  std::vector<boost::endian::little_float32_buf_t> values(expected /
-                                                          sizeof(float));
-  stream.read(reinterpret_cast<char*>(values.data()),
+  map.values.resize(expected / sizeof(float));
+  stream.read(reinterpret_cast<char*>(map.values.data()),
               static_cast<std::streamsize>(expected));
   if (!stream) throw std::runtime_error("cannot read " + path);
-  map.values.reserve(values.size());
-  for (const auto& value : values) map.values.push_back(value.value());
   return map;
 }
 
