@@ -27,8 +27,7 @@ struct HostOptions {
   // photometric one; -1: num_iterations, as that has.
   int num_geom_iterations = -1;
   // Whether to take COLMAP's own numbers of iterations and of samples, which
-  // cost two and a half times as much (docs/results.md), in place of those
-  // given.
+  // cost more than twice as much (docs/results.md), in place of those given.
   bool colmap_defaults = false;
 
   // Whether to complete surfaces without texture by TAPA-MVS (Romanoni and
