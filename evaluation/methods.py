@@ -2,8 +2,9 @@
 
 from .processes import number_text
 
-# As many iterations and samples as COLMAP takes, and so the paper.
-_COLMAP = ["--PatchMatchStereo.colmap_defaults", "1"]
+# What COLMAP takes, and so the paper; in the program colmap_defaults says the same.
+_COLMAP = ["--PatchMatchStereo.num_iterations", "5",
+           "--PatchMatchStereo.num_samples", "15"]
 _TAPA = ["--PatchMatchStereo.tapa", "1"]
 _PAPER = _COLMAP + _TAPA + ["--PatchMatchStereo.tapa_completion", "0",
                   "--PatchMatchStereo.tapa_min_textureness", "0.5"]
@@ -63,9 +64,9 @@ LABELS = {
 
 # The columns of the paper's Table 2: with the paper's own method, and with what
 # this program does.
-ABLATION = ["plain", "paper-weights", "paper-coarse", "paper-fine",
+ABLATION = ["colmap", "paper-weights", "paper-coarse", "paper-fine",
             "paper-refinement", "paper"]
-TAPA_ABLATION = [name.replace("paper", "tapa") for name in ABLATION]
+TAPA_ABLATION = ["plain", *(name.replace("paper", "tapa") for name in ABLATION[1:])]
 
 
 def fusion_options(reprojection_error, normal_error=20):
