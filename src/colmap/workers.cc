@@ -3,7 +3,7 @@
 #include <set>
 #include <sstream>
 
-#include "src/files/failure.h"
+#include "src/base/failure.h"
 
 namespace tapa {
 namespace {
@@ -41,7 +41,7 @@ std::string Describe(int index, const DeviceList& list) {
   return std::to_string(index) + " (" + list.devices[index].name + ")";
 }
 
-// scripts/evaluation/machine.py reads the names from this line.
+// evaluation/machine.py reads the names from this line.
 std::string ComputingOn(const std::vector<int>& indices,
                         const DeviceList& list) {
   std::string names;

@@ -179,7 +179,7 @@ def run(source_dir, bin_dir, data, out, arguments):
     """Runs COLMAP's own algorithm and TAPA. Returns the exit status."""
     shutil.rmtree(out, ignore_errors=True)
     status = subprocess.run(
-        [os.path.join(source_dir, "scripts", "benchmark"), data, "--out", out,
+        [os.path.join(source_dir, "scripts", "evaluate"), data, "--out", out,
          "--no_clouds", *arguments],
         env=dict(os.environ, TAPA_BIN_DIR=bin_dir), check=False).returncode
     if status == 0:
@@ -213,7 +213,7 @@ def main():
         return 77
     status = run(source_dir, bin_dir, data, out, case["arguments"])
     if status != 0:
-        return report(False, f"scripts/benchmark: exit status {status}")
+        return report(False, f"scripts/evaluate: exit status {status}")
     (plain, plain_time), (tapa, tapa_time) = (
         read_results(os.path.join(out, os.path.basename(data), method))
         for method in ("plain-0", "tapa-0"))

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "src/mvs/vec3.h"
+#include "src/base/vec3.h"
 #include "tests/eval/test_files.h"
 
 namespace tapa {
@@ -22,20 +22,6 @@ inline void WritePoints(const std::string& path,
             "end_header\n";
   for (const Vec3& point : points) {
     stream << point.x << " " << point.y << " " << point.z << "\n";
-  }
-}
-
-// That reading a file fails with its path and `part` in the message.
-template <typename Read>
-void ExpectReadError(const Read& read, const std::string& path,
-                     const std::string& part) {
-  try {
-    read(path);
-    ADD_FAILURE() << "no error: " << part;
-  } catch (const std::runtime_error& error) {
-    const std::string text = error.what();
-    EXPECT_NE(text.find(path), std::string::npos) << text;
-    EXPECT_NE(text.find(part), std::string::npos) << text;
   }
 }
 

@@ -1,0 +1,107 @@
+#include "src/base/atomic_file.h"
+
+#include <dirent.h>
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <climits>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+#include "src/base/failure.h"
+
+namespace tapa {
+namespace {
+
+// What a temporary name has between the final one and the number of the
+// process.
+std::string TemporaryMark() {
+  char host[HOST_NAME_MAX + 1] = "";
+  gethostname(host, sizeof(host) - 1);
+  return std::string(".part-") + host + "-";
+}
+
+}  // namespace
+
+AtomicFile::AtomicFile(const std::string& path)
+    : path_(path),
+      temporary_path_(path + TemporaryMark() + std::to_string(getpid())) {
+  file_ = open(temporary_path_.c_str(),
+               O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (file_ < 0) {
+    Fail();
+  }
+}
+
+AtomicFile::~AtomicFile() {
+  if (file_ >= 0) {
+    close(file_);
+    unlink(temporary_path_.c_str());
+  }
+}
+
+void AtomicFile::Write(const void* data, size_t size) {
+  const char* bytes = static_cast<const char*>(data);
+  while (size > 0) {
+    const ssize_t written = write(file_, bytes, size);
+    if (written < 0 && errno == EINTR) {
+      continue;
+    }
+    if (written <= 0) {
+      Fail();
+    }
+    bytes += written;
+    size -= written;
+  }
+}
+
+void AtomicFile::Commit() {
+  if (fsync(file_) != 0) {
+    Fail();
+  }
+  const int file = file_;
+  file_ = -1;
+  if (close(file) != 0 || rename(temporary_path_.c_str(), path_.c_str()) != 0) {
+    const int error = errno;
+    unlink(temporary_path_.c_str());
+    errno = error;
+    Fail();
+  }
+}
+
+void AtomicFile::Fail() {
+  const int error = errno;
+  if (file_ >= 0) {
+    close(file_);
+    unlink(temporary_path_.c_str());
+    file_ = -1;
+  }
+  throw Failure("Cannot write " + path_ + ": " + std::strerror(error) +
+                "; see to it that there is room and that the folder can be "
+                "written, then run the same command again to go on");
+}
+
+void RemoveStaleTemporaries(const std::string& folder) {
+  DIR* dir = opendir(folder.c_str());
+  if (dir == nullptr) {
+    return;
+  }
+  const std::string mark = TemporaryMark();
+  while (const dirent* entry = readdir(dir)) {
+    const std::string name = entry->d_name;
+    const size_t position = name.rfind(mark);
+    if (position == std::string::npos) {
+      continue;
+    }
+    const long process = std::atol(name.c_str() + position + mark.size());
+    if (process > 0 && kill(process, 0) != 0 && errno == ESRCH) {
+      unlink((folder + "/" + name).c_str());
+    }
+  }
+  closedir(dir);
+}
+
+}  // namespace tapa
