@@ -17,12 +17,12 @@ def gpu(index):
 
 class EmulatedGpu(tiny.TestCase):
 
-    def stereo(self, name, workers, **environment):
-        """A run in a workspace of its own."""
+    def stereo(self, name, workers, size=40, **environment):
+        """A run in a workspace of its own; size: of the images, as it is slow."""
         folder = self.path(name)
         self.names = tiny.make_workspace(folder, num_views=3)
         command = tiny.stereo_command(folder, tapa=1, num_threads=1,
-                                      max_image_size=64, **workers)
+                                      max_image_size=size, **workers)
         result = tiny.run([os.environ["EMULATED_GPU_STEREO"]] + command[2:],
                           env=dict(os.environ, **environment))
         return result, folder
@@ -54,9 +54,10 @@ class EmulatedGpu(tiny.TestCase):
             self.assertEqual(output.count(" %s: " % name), 2, output)
 
     def test_views_that_need_more_memory_are_left_to_the_cpu(self):
-        expected, _ = self.maps("cpu", CPU)
+        expected, _ = self.maps("cpu", CPU, size=64)
         # Enough for the small test, and too little for a view.
-        actual, output = self.maps("little", gpu("-1"), EMULATED_GPU_MEMORY_KB="68")
+        actual, output = self.maps("little", gpu("-1"), size=64,
+                                   EMULATED_GPU_MEMORY_KB="68")
         self.assert_same_files(expected, actual)
         for name in self.names:
             self.assertRegex(

@@ -44,10 +44,10 @@ class CudaDeviceTest : public testing::Test {
 
 SyntheticPlane MakeScene(int num_sources, int width = 96, int height = 72) {
   SyntheticOptions options;
-  options.width = width;
-  options.height = height;
+  options.width = static_cast<int>(width * SceneScale());
+  options.height = static_cast<int>(height * SceneScale());
   options.num_sources = num_sources;
-  options.focal_length = 1.2 * width;
+  options.focal_length = 1.2 * options.width;
   options.wall = 0.4;
   options.noise = 2;
   return SyntheticPlane(options);

@@ -16,10 +16,10 @@ namespace {
 
 SyntheticPlane MakeScene() {
   SyntheticOptions options;
-  options.width = 96;
-  options.height = 72;
+  options.width = static_cast<int>(96 * SceneScale());
+  options.height = static_cast<int>(72 * SceneScale());
   options.num_sources = 6;
-  options.focal_length = 115;
+  options.focal_length = 1.2 * options.width;
   options.wall = 0.4;
   options.noise = 2;
   return SyntheticPlane(options);
@@ -57,7 +57,9 @@ TEST(CudaEstimate, IsAsGoodAsThatOfTheCpu) {
     const double gpu = ShareRight(options, scene);
     std::printf("tapa %d: right to 1 %%: CPU %.2f %%, GPU %.2f %%\n", tapa,
                 100 * cpu, 100 * gpu);
-    EXPECT_GE(gpu, cpu - 0.02);
+    // Chance moves the share by the inverse square root of the number of
+    // pixels.
+    EXPECT_GE(gpu, cpu - 0.02 / SceneScale());
   }
 }
 

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 namespace tapa {
 namespace {
@@ -80,6 +81,11 @@ Camera Scaled(Camera camera, double scale_x, double scale_y) {
 }
 
 }  // namespace
+
+double SceneScale() {
+  const char* scale = std::getenv("TAPA_SCENE_SCALE");
+  return scale == nullptr ? 1 : std::atof(scale);
+}
 
 SyntheticPlane::SyntheticPlane(const SyntheticOptions& options) {
   std::mt19937 random(options.seed);

@@ -10,6 +10,10 @@ namespace tapa {
 
 // Small scenes with known depth for tests.
 
+// What tests on the emulated GPU, which is slow, multiply the width and height
+// of their scenes by: TAPA_SCENE_SCALE of the environment, 1 without it.
+double SceneScale();
+
 struct SyntheticOptions {
   int width = 48;
   int height = 40;
