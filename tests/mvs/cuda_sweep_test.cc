@@ -51,6 +51,7 @@ struct CudaScene {
     options.filter = c.filter;
     options.window_radius = c.window_radius;
     options.window_step = c.window_step;
+    options.num_iterations = 5;
     options.seed = 11;
     options.tapa.enabled = c.guided || c.filter;
     params = MakeSweepParams(options, c.index);

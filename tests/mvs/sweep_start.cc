@@ -11,6 +11,7 @@ SweepParams MakeSweepParams(const Options& options, int index) {
   SweepParams params;
   params.index = index;
   params.seed = options.seed;
+  params.num_samples = options.num_samples;
   params.perturbation =
       static_cast<float>(std::pow(2.0, -(index / 4 + index % 4 / 4.0)));
   params.prev_prob_weight =

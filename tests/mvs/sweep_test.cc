@@ -193,6 +193,7 @@ TEST_P(SweepTest, MakesTheChoicesOfTheReference) {
   scene_options.num_sources = 5;
   const SyntheticPlane scene(scene_options);
   Options options;
+  options.num_iterations = 5;
   options.geom_consistency = GetParam().geometric;
   options.filter = false;
   options.seed = 11;
@@ -440,6 +441,7 @@ void ExpectPlanesToWinOnAFlatPatch(bool geometric) {
     source.depth = &no_depth;
   }
   Options options;
+  options.num_iterations = 5;
   options.geom_consistency = geometric;
   const ProblemData data(options, problem);
   SweepScratch scratch(data);

@@ -17,7 +17,7 @@ struct SweepParams {
   float perturbation = 1;
   // Weight of the selection probability of the sweep before, 0 to 1.
   float prev_prob_weight = 0;
-  int num_samples = 15;
+  int num_samples = 8;
   // Half size of the correlation window, in pixels.
   float window_radius = 5;
   ViewSelection selection;
