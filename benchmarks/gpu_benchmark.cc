@@ -15,9 +15,11 @@
 #include <utility>
 
 #include "benchmarks/wide_scene.h"
-#include "src/mvs/backend.h"
+#include "src/mvs/backends.h"
+#include "src/mvs/cuda/device_profile.h"
+#include "src/mvs/cuda/memory_plan.h"
 #include "src/mvs/devices.h"
-#include "src/mvs/hypotheses.h"
+#include "src/mvs/sweep/hypotheses.h"
 
 namespace tapa {
 namespace {

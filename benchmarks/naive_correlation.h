@@ -1,9 +1,9 @@
 #ifndef TAPA_BENCHMARKS_NAIVE_CORRELATION_H_
 #define TAPA_BENCHMARKS_NAIVE_CORRELATION_H_
 
+#include "src/base/map.h"
 #include "src/mvs/cpu/window.h"
-#include "src/mvs/map.h"
-#include "src/mvs/source_cameras.h"
+#include "src/mvs/sweep/source_cameras.h"
 
 namespace tapa {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "src/mvs/camera_table.h"
-#include "src/mvs/random.h"
+#include "src/mvs/sweep/random.h"
 #include "src/mvs/tapa/fill.h"
 #include "src/mvs/tapa/speckles.h"
 #include "src/mvs/tapa/superpixel_planes.h"

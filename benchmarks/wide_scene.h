@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "src/mvs/estimate_depth.h"
+#include "src/mvs/problem.h"
 
 namespace tapa {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "src/mvs/estimate_depth.h"
+#include "src/mvs/problem.h"
 
 namespace tapa {
 

@@ -8,8 +8,8 @@
 #include <cstring>
 #include <fstream>
 
-#include "src/files/atomic_file.h"
-#include "src/files/failure.h"
+#include "src/base/atomic_file.h"
+#include "src/base/failure.h"
 
 // Values are copied as they stand in memory.
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__,

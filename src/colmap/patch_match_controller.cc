@@ -8,12 +8,12 @@
 #include <thread>
 
 #include "mvs/patch_match.h"
+#include "src/base/failure.h"
 #include "src/colmap/engine_options.h"
 #include "src/colmap/interrupt.h"
 #include "src/colmap/option_list.h"
 #include "src/colmap/stereo_run.h"
 #include "src/colmap/workers.h"
-#include "src/files/failure.h"
 #include "src/mvs/device_trial.h"
 #include "util/misc.h"
 

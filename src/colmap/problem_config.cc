@@ -6,7 +6,7 @@
 #include <unordered_map>
 #include <unordered_set>
 
-#include "src/files/failure.h"
+#include "src/base/failure.h"
 #include "util/math.h"
 
 namespace tapa {

@@ -10,15 +10,18 @@
 #include <vector>
 
 #include "mvs/patch_match.h"
+#include "src/colmap/engine_options.h"
 #include "src/colmap/options_record.h"
 #include "src/colmap/problem_config.h"
 #include "src/colmap/progress.h"
 #include "src/colmap/view_cache.h"
 #include "src/colmap/views.h"
 #include "src/colmap/workspace.h"
-#include "src/mvs/estimate_depth.h"
+#include "src/mvs/problem.h"
 
 namespace tapa {
+
+struct TapaRecord;
 
 // Computes the maps of all views that a workspace's configuration lists, each
 // worker one view after the other. What can be wrong is looked for before
@@ -39,9 +42,6 @@ class StereoRun {
   int NumViews() const { return static_cast<int>(problems_.size()); }
 
  private:
-  // One of the two passes over all views.
-  enum class Pass { kPhotometric, kGeometric };
-
   // Returns false if stopped.
   bool Prepare(const std::function<bool()>& stopped);
   void DropMissing();
@@ -52,9 +52,6 @@ class StereoRun {
   bool ReadPhotos(const std::function<bool()>& stopped);
   void PrepareFolders() const;
 
-  Pass FinalPass() const;
-  // The options that a pass runs with.
-  colmap::mvs::PatchMatchOptions PassOptions(Pass pass) const;
   // The options that a pass's maps depend on.
   OptionValues RecordedOptions(Pass pass) const;
   std::string MapPath(const std::string& kind, int view, Pass pass) const;

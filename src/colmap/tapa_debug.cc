@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "src/files/atomic_file.h"
+#include "src/base/atomic_file.h"
 #include "src/pictures/image_io.h"
 #include "util/misc.h"
 

@@ -7,7 +7,7 @@
 #include <memory>
 #include <unordered_map>
 
-#include "src/mvs/map.h"
+#include "src/base/map.h"
 
 namespace tapa {
 

@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "mvs/image.h"
-#include "src/files/failure.h"
+#include "src/base/failure.h"
 #include "util/bitmap.h"
 
 namespace tapa {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "mvs/model.h"
-#include "src/mvs/map.h"
+#include "src/base/map.h"
 #include "src/mvs/view.h"
 
 namespace tapa {

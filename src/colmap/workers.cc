@@ -3,7 +3,7 @@
 #include <set>
 #include <sstream>
 
-#include "src/files/failure.h"
+#include "src/base/failure.h"
 
 namespace tapa {
 namespace {

@@ -1,8 +1,8 @@
 #include "src/colmap/workspace.h"
 
 #include "mvs/workspace.h"
+#include "src/base/failure.h"
 #include "src/colmap/fatal_errors.h"
-#include "src/files/failure.h"
 #include "util/misc.h"
 #include "util/string.h"
 

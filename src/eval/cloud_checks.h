@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "src/base/vec3.h"
 #include "src/eval/voxel_average.h"
-#include "src/mvs/vec3.h"
 
 namespace tapa {
 

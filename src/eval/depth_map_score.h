@@ -5,9 +5,9 @@
 #include <limits>
 #include <vector>
 
+#include "src/base/map.h"
 #include "src/eval/error_histogram.h"
 #include "src/eval/tolerance.h"
-#include "src/mvs/map.h"
 
 namespace tapa {
 

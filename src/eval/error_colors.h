@@ -3,7 +3,7 @@
 
 #include <opencv2/core.hpp>
 
-#include "src/mvs/map.h"
+#include "src/base/map.h"
 
 namespace tapa {
 

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "src/base/parallel.h"
 #include "src/eval/cloud_checks.h"
 #include "src/eval/command_line.h"
 #include "src/eval/meshlab_project.h"
@@ -19,7 +20,6 @@
 #include "src/eval/point_cloud_score.h"
 #include "src/eval/score_table.h"
 #include "src/eval/tolerance.h"
-#include "src/mvs/cpu/parallel.h"
 
 namespace tapa {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "src/mvs/vec3.h"
+#include "src/base/vec3.h"
 
 namespace tapa {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "src/mvs/cpu/parallel.h"
+#include "src/base/parallel.h"
 
 namespace tapa {
 

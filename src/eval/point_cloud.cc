@@ -12,8 +12,8 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "src/base/atomic_file.h"
 #include "src/eval/ply_header.h"
-#include "src/files/atomic_file.h"
 
 namespace tapa {
 namespace {

@@ -4,10 +4,10 @@
 #include <cstddef>
 #include <vector>
 
+#include "src/base/parallel.h"
+#include "src/base/vec3.h"
 #include "src/eval/meshlab_project.h"
 #include "src/eval/voxel_average.h"
-#include "src/mvs/cpu/parallel.h"
-#include "src/mvs/vec3.h"
 
 namespace tapa {
 

@@ -6,7 +6,7 @@
 #include <iomanip>
 #include <sstream>
 
-#include "src/files/atomic_file.h"
+#include "src/base/atomic_file.h"
 
 namespace tapa {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "src/mvs/map.h"
-#include "src/mvs/vec3.h"
+#include "src/base/map.h"
+#include "src/base/vec3.h"
 
 namespace tapa {
 

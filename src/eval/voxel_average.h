@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "src/mvs/cpu/parallel.h"
-#include "src/mvs/vec3.h"
+#include "src/base/parallel.h"
+#include "src/base/vec3.h"
 
 namespace tapa {
 

@@ -3,12 +3,11 @@
 
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <vector>
 
-#include "src/mvs/estimate_depth.h"
 #include "src/mvs/plane_set.h"
-#include "src/mvs/sweep.h"
+#include "src/mvs/problem.h"
+#include "src/mvs/sweep/sweep_params.h"
 
 namespace tapa {
 
@@ -32,7 +31,7 @@ class Backend {
   virtual bool Sweep(const SweepParams& params, const More& more) = 0;
 
   // Weighs costs by the textureness of every pixel from now on, see
-  // texture_weights.h.
+  // sweep/texture_weights.h.
   virtual void SetTextureness(Map<float> textureness) = 0;
 
   // Gives sweeps further hypotheses, until the next call.
@@ -51,12 +50,6 @@ class Backend {
   // Moves the result out; the backend cannot be used any more.
   virtual Estimate TakeResult() = 0;
 };
-
-// options.num_threads threads of the CPU, with its widest SIMD instructions.
-std::unique_ptr<Backend> MakeCpuBackend(const Options& options,
-                                        const Problem& problem);
-
-// That on a GPU is made by MakeCudaBackend, devices.h.
 
 }  // namespace tapa
 

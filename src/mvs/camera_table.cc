@@ -9,9 +9,12 @@ namespace {
 
 using Matrix3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
-Matrix3 Intrinsics(const Camera& camera) {
+// Intrinsics that take rays to (col, row) rather than to (x, y) = (col + 0.5,
+// row + 0.5). The only place that knows of the half pixel: all that sweeps and
+// TAPA compute with indices of pixels follows from here.
+Matrix3 IndexIntrinsics(const Camera& camera) {
   Matrix3 K;
-  K << camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1;
+  K << camera.fx, 0, camera.cx - 0.5, 0, camera.fy, camera.cy - 0.5, 0, 0, 1;
   return K;
 }
 
@@ -27,10 +30,12 @@ Eigen::Map<const Eigen::Vector3d> Translation(const Camera& camera) {
 
 CameraTable::CameraTable(const Problem& problem) {
   const Camera& ref = problem.reference.camera;
-  reference_.inv_fx = static_cast<float>(1.0 / ref.fx);
-  reference_.inv_fy = static_cast<float>(1.0 / ref.fy);
-  reference_.offset_x = static_cast<float>(-ref.cx / ref.fx);
-  reference_.offset_y = static_cast<float>(-ref.cy / ref.fy);
+  const Matrix3 K = IndexIntrinsics(ref);
+  const Matrix3 inverse_K = K.inverse();
+  reference_.inv_fx = static_cast<float>(inverse_K(0, 0));
+  reference_.inv_fy = static_cast<float>(inverse_K(1, 1));
+  reference_.offset_x = static_cast<float>(inverse_K(0, 2));
+  reference_.offset_y = static_cast<float>(inverse_K(1, 2));
 
   count_ = static_cast<int>(problem.sources.size());
   padded_count_ = (count_ + SourceCameras::kPadding - 1) /
@@ -38,14 +43,13 @@ CameraTable::CameraTable(const Problem& problem) {
   coefficients_.resize(static_cast<size_t>(SourceCameras::kNumCoefficients) *
                        padded_count_);
 
-  const Matrix3 K = Intrinsics(ref);
   for (int m = 0; m < padded_count_; ++m) {
     const View& view = problem.sources[m < count_ ? m : 0];
-    const Matrix3 K_m = Intrinsics(view.camera);
+    const Matrix3 K_m = IndexIntrinsics(view.camera);
     const Matrix3 R = Rotation(view.camera) * Rotation(ref).transpose();
     const Eigen::Vector3d t = Translation(view.camera) - R * Translation(ref);
     const Eigen::Vector3d C = -R.transpose() * t;
-    const Matrix3 A = K_m * R * K.inverse();
+    const Matrix3 A = K_m * R * inverse_K;
     const Matrix3 B = K * R.transpose() * K_m.inverse();
     const Eigen::Vector3d b = K_m * t;
     const Eigen::Vector3d g = K * C;

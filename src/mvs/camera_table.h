@@ -3,13 +3,14 @@
 
 #include <vector>
 
-#include "src/mvs/estimate_depth.h"
-#include "src/mvs/plane.h"
-#include "src/mvs/source_cameras.h"
+#include "src/mvs/problem.h"
+#include "src/mvs/sweep/plane.h"
+#include "src/mvs/sweep/source_cameras.h"
 
 namespace tapa {
 
-// Computes and owns the cameras of a problem in the form that sweeps read.
+// Computes and owns the cameras of a problem in the form that sweeps read: for
+// indices of pixels, whole numbers being their centres.
 class CameraTable {
  public:
   explicit CameraTable(const Problem& problem);

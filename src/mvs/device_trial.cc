@@ -4,9 +4,9 @@
 #include <cmath>
 #include <vector>
 
-#include "src/mvs/devices.h"
+#include "src/mvs/device_error.h"
 #include "src/mvs/estimate_depth.h"
-#include "src/mvs/random.h"
+#include "src/mvs/sweep/random.h"
 
 namespace tapa {
 namespace {
@@ -70,9 +70,10 @@ class TrialScene {
     Map<uint8_t> image(kWidth, kHeight);
     for (int row = 0; row < kHeight; ++row) {
       for (int col = 0; col < kWidth; ++col) {
-        const double x = offset[0] + kDepth * (col - kWidth / 2) / kFocalLength;
+        const double x =
+            offset[0] + kDepth * (col + 0.5 - kWidth / 2) / kFocalLength;
         const double y =
-            offset[1] + kDepth * (row - kHeight / 2) / kFocalLength;
+            offset[1] + kDepth * (row + 0.5 - kHeight / 2) / kFocalLength;
         image.At(row, col) = static_cast<uint8_t>(Texture(x, y) + 0.5);
       }
     }

@@ -6,9 +6,10 @@
 #include <string>
 #include <utility>
 
-#include "src/mvs/backend.h"
+#include "src/mvs/backends.h"
 #include "src/mvs/camera_table.h"
-#include "src/mvs/devices.h"
+#include "src/mvs/cpu/memory_plan.h"
+#include "src/mvs/sweep/hypotheses.h"
 #include "src/mvs/tapa/stages.h"
 
 namespace tapa {
@@ -222,21 +223,9 @@ std::optional<Estimate> EstimateDepth(const Options& options, Problem problem,
 }
 
 size_t EstimateDepthMemory(const Options& options, const Problem& problem) {
-  const size_t num_sources = problem.sources.size();
   const size_t pixels = problem.reference.image->size();
-  const bool tapa = options.tapa.enabled;
-  size_t bytes = pixels * (sizeof(float) + sizeof(Vec3) + sizeof(uint8_t) +
-                           2 * sizeof(uint16_t) * num_sources);
-  if (options.filter || tapa) {
-    bytes += pixels * ((num_sources + 7) / 8);
-  }
-  if (tapa) {
-    bytes += pixels * kTapaBytesPerPixel;
-  }
-  for (const View& view : problem.sources) {
-    bytes += view.image->size() * sizeof(uint16_t);
-  }
-  return bytes;
+  return CpuBackendMemory(options, problem) +
+         (options.tapa.enabled ? pixels * kTapaBytesPerPixel : 0);
 }
 
 }  // namespace tapa

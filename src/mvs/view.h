@@ -4,16 +4,18 @@
 #include <array>
 #include <cstdint>
 
-#include "src/mvs/map.h"
+#include "src/base/map.h"
 
 namespace tapa {
 
-// Pinhole camera. A world point X is seen at pixel (col, row) with
+// Pinhole camera. A world point X is seen at (x, y) with
 //
-//   depth * (col, row, 1)^T = K (R X + t),   K = [fx 0 cx; 0 fy cy; 0 0 1].
+//   depth * (x, y, 1)^T = K (R X + t),   K = [fx 0 cx; 0 fy cy; 0 0 1].
 //
-// Integer pixel coordinates are pixel centres, as in COLMAP's dense stereo.
-// Depth is planar: the z coordinate in the camera frame, in scene units.
+// As in COLMAP's sparse models pixel (row, col) covers [col, col + 1) x
+// [row, row + 1), so its ray goes through (col + 0.5, row + 0.5), at every
+// image size: an image that is scaled has K scaled by the same ratios, nothing
+// else. Depth is planar: the z coordinate in the camera frame, in scene units.
 struct Camera {
   double fx = 1.0;
   double fy = 1.0;

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "src/mvs/map.h"
+#include "src/base/map.h"
 
 namespace tapa {
 

@@ -8,7 +8,7 @@
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
-#include "src/mvs/sweep.h"
+#include "src/mvs/sweep/hypotheses.h"
 #include "src/pictures/color_map.h"
 #include "src/pictures/drawing.h"
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "src/mvs/map.h"
+#include "src/base/map.h"
+#include "src/base/vec3.h"
 #include "src/mvs/tapa/stages.h"
-#include "src/mvs/vec3.h"
 
 namespace tapa {
 
@@ -59,7 +59,7 @@ const std::vector<std::string>& TapaPictureNames();
 // there, or differ in size.
 std::vector<NamedPicture> DrawTapaPictures(const TapaView& view);
 
-// The colour of a hypothesis (Hypothesis in sweep.h).
+// The colour of a hypothesis (Hypothesis in sweep/hypotheses.h).
 cv::Vec3b HypothesisColor(int hypothesis);
 
 // The colour of an origin (Origin in stages.h).

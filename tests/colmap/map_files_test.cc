@@ -9,8 +9,8 @@
 #include "mvs/consistency_graph.h"
 #include "mvs/depth_map.h"
 #include "mvs/normal_map.h"
-#include "src/files/atomic_file.h"
-#include "src/files/failure.h"
+#include "src/base/atomic_file.h"
+#include "src/base/failure.h"
 #include "tests/colmap/test_folder.h"
 
 namespace tapa {

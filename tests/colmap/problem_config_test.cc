@@ -4,7 +4,7 @@
 
 #include <fstream>
 
-#include "src/files/failure.h"
+#include "src/base/failure.h"
 #include "tests/colmap/test_folder.h"
 
 namespace tapa {

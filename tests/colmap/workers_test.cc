@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "src/files/failure.h"
+#include "src/base/failure.h"
 
 namespace tapa {
 namespace {

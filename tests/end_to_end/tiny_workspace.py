@@ -5,8 +5,10 @@ Needs nothing but Python's standard library. The environment variable COLMAP
 names the program, where it is not build/bin/colmap.
 """
 
+import math
 import os
 import random
+import re
 import shutil
 import struct
 import subprocess
@@ -53,13 +55,14 @@ def depth_at(x, center_x):
     return (4 + center_x / 4) / (1 - x / 4)
 
 
-def _render(center_x, width, height):
+def render(center_x, width, height):
+    """Grey values of what a camera sees, row by row."""
     scale = width / WIDTH
     pixels = bytearray()
     for row in range(height):
-        y = (row - height / 2) / (FOCAL * scale)
+        y = (row + 0.5 - height / 2) / (FOCAL * scale)
         for col in range(width):
-            x = (col - width / 2) / (FOCAL * scale)
+            x = (col + 0.5 - width / 2) / (FOCAL * scale)
             z = depth_at(x, center_x)
             pixels.append(_SAMPLE(center_x + x * z + 8, y * z + 8))
     return bytes(pixels)
@@ -156,7 +159,7 @@ def make_images(path, names, width=WIDTH, height=HEIGHT):
         image_path = os.path.join(path, name)
         os.makedirs(os.path.dirname(image_path), exist_ok=True)
         write_png(image_path, width, height,
-                  _render(i * BASELINE, width, height))
+                  render(i * BASELINE, width, height))
 
 
 def make_config(workspace, names, sources="__all__"):
@@ -195,6 +198,35 @@ def read_map(path):
     return width, height, values
 
 
+def write_map(path, width, height, values):
+    with open(path, "wb") as file:
+        file.write(b"%d&%d&%d&" % (width, height, len(values) // (width * height)))
+        file.write(struct.pack("<%df" % len(values), *values))
+
+
+def write_true_maps(workspace, name, index, width, height):
+    """Depth and normal maps of view number `index`, without an error."""
+    depths = [depth_at((col + 0.5 - width / 2) / (FOCAL * width / WIDTH),
+                       index * BASELINE)
+              for _ in range(height) for col in range(width)]
+    length = math.hypot(0.25, 1)
+    normals = [value for component in (0.25 / length, 0.0, -1 / length)
+               for value in [component] * (width * height)]
+    write_map(map_path(workspace, name), width, height, depths)
+    write_map(map_path(workspace, name, "normal_maps"), width, height, normals)
+
+
+def read_points(path):
+    """x, y, z and red of the points that fusion wrote."""
+    with open(path, "rb") as file:
+        header, data = file.read().split(b"end_header\n", 1)
+    names = re.findall(rb"property (\w+) (\w+)", header)
+    assert [name for _, name in names] == [
+        b"x", b"y", b"z", b"nx", b"ny", b"nz", b"red", b"green", b"blue"], header
+    return [(x, y, z, red) for x, y, z, _, _, _, red, _, _
+            in struct.iter_unpack("<6f3B", data)]
+
+
 def depth_errors(workspace, name, index, **where):
     """|depth / true depth - 1| of the pixels of view number `index` that have a
     depth, and the number of all pixels."""
@@ -202,7 +234,7 @@ def depth_errors(workspace, name, index, **where):
     errors = []
     for i, depth in enumerate(depths):
         if depth > 0:
-            x = (i % width - width / 2) / (FOCAL * width / WIDTH)
+            x = (i % width + 0.5 - width / 2) / (FOCAL * width / WIDTH)
             errors.append(abs(depth / depth_at(x, index * BASELINE) - 1))
     return errors, len(depths)
 

@@ -50,6 +50,26 @@ class Colmap(tiny.TestCase):
         self.assert_success(result)
         self.assertGreater(os.path.getsize(self.path("fused.ply")), 20000)
 
+    def test_fused_points_are_where_the_photograph_sees_them(self):
+        # True maps of one view, a third of its size: the points must lie on the
+        # plane, and have the colours that are seen there.
+        (name,) = tiny.make_workspace(self.folder, num_views=1)
+        tiny.write_true_maps(self.folder, name, 0, 32, 21)
+        self.assert_success(tiny.run([
+            tiny.COLMAP, "stereo_fusion", "--workspace_path", self.folder,
+            "--output_path", self.path("fused.ply"),
+            "--StereoFusion.min_num_pixels", "1"]))
+        points = tiny.read_points(self.path("fused.ply"))
+        self.assertEqual(len(points), 32 * 21)
+        photo = tiny.render(0, tiny.WIDTH, tiny.HEIGHT)
+        for x, y, z, color in points:
+            self.assertAlmostEqual(z, 4 + x / 4, delta=1e-4)
+            u, v = (tiny.FOCAL * a / z + size / 2
+                    for a, size in ((x, tiny.WIDTH), (y, tiny.HEIGHT)))
+            # Between two rows either will do.
+            self.assertIn(color, [photo[int(row) * tiny.WIDTH + int(u)]
+                                  for row in (v - 0.01, v + 0.01)])
+
     def test_photometric_only(self):
         names = tiny.make_workspace(self.folder)
         self.assert_success(tiny.run_stereo(self.folder, geom_consistency=0,

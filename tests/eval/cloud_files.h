@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "src/mvs/vec3.h"
+#include "src/base/vec3.h"
 #include "tests/eval/test_files.h"
 
 namespace tapa {

@@ -3,8 +3,8 @@
 
 #include <vector>
 
+#include "src/base/vec3.h"
 #include "src/eval/point_cloud_score.h"
-#include "src/mvs/vec3.h"
 
 namespace tapa {
 namespace reference {

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "src/files/failure.h"
+#include "src/base/failure.h"
 #include "tests/eval/cloud_files.h"
 #include "tests/eval/run_program.h"
 #include "tests/eval/test_files.h"

@@ -57,9 +57,11 @@ void CompareCosts(const Options& options, const Problem& problem) {
   const RefCamera camera = data.cameras.reference();
   Patch patch(data.window);
   std::mt19937 random(7);
-  // Without SIMD all samples are added up one by one, which rounds more.
-  const bool one_by_one = InstructionSet() == std::string("SCALAR");
-  const double tolerance = one_by_one ? 5e-4 : 1e-4;
+  // Without SIMD all samples are added up one by one, which rounds more; few
+  // samples may have so little contrast that rounding shows.
+  const bool rounds_more =
+      InstructionSet() == std::string("SCALAR") || options.window_radius == 1;
+  const double tolerance = rounds_more ? 5e-4 : 1e-4;
   int num_informative = 0;
   for (int row = 0; row < data.height; row += 3) {
     for (int col = 0; col < data.width; col += 2) {

@@ -8,7 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "src/mvs/backend.h"
+#include "src/mvs/backends.h"
+#include "src/mvs/cuda/memory_plan.h"
+#include "src/mvs/device_error.h"
 #include "src/mvs/device_trial.h"
 #include "src/mvs/devices.h"
 #include "src/mvs/estimate_depth.h"

@@ -11,7 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "src/mvs/backend.h"
+#include "src/mvs/backends.h"
+#include "src/mvs/cuda/memory_plan.h"
+#include "src/mvs/device_error.h"
 #include "src/mvs/devices.h"
 #include "src/mvs/estimate_depth.h"
 #include "tests/mvs/sweep_start.h"

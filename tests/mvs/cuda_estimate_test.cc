@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "src/mvs/device_error.h"
 #include "src/mvs/devices.h"
 #include "src/mvs/estimate_depth.h"
 #include "tests/mvs/synthetic.h"

@@ -2,15 +2,19 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Core>
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstring>
 #include <new>
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
+#include "src/base/parallel.h"
 #include "src/mvs/cpu/aligned.h"
-#include "src/mvs/cpu/parallel.h"
 #include "tests/mvs/synthetic.h"
 
 namespace tapa {
@@ -63,6 +67,66 @@ TEST(EstimateDepth, FindsAPlaneFromRandomStart) {
     num_normals += Dot(estimate->normal.data()[i], scene.normal()) > 0.95f;
   }
   EXPECT_GT(num_normals, 0.6 * estimate->normal.size());
+}
+
+// Where the first source view sees a pixel that has a depth, by the rule that
+// pixel (row, col) has its centre at (col + 0.5, row + 0.5).
+Eigen::Vector2d SeenAt(const Problem& problem, int row, int col, double depth) {
+  using Matrix = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+  const Camera& ref = problem.reference.camera;
+  const Camera& source = problem.sources[0].camera;
+  const Eigen::Vector3d point(depth * (col + 0.5 - ref.cx) / ref.fx,
+                              depth * (row + 0.5 - ref.cy) / ref.fy, depth);
+  const Eigen::Vector3d world =
+      Eigen::Map<const Matrix>(ref.R.data()).transpose() *
+      (point - Eigen::Map<const Eigen::Vector3d>(ref.t.data()));
+  const Eigen::Vector3d seen =
+      Eigen::Map<const Matrix>(source.R.data()) * world +
+      Eigen::Map<const Eigen::Vector3d>(source.t.data());
+  return {source.fx * seen(0) / seen(2) + source.cx,
+          source.fy * seen(1) / seen(2) + source.cy};
+}
+
+// Half a pixel too much or too little in a ray moves what a camera sees that is
+// turned by 90 degrees by 0.7 pixels.
+TEST(EstimateDepth, FindsTheSamePlaneToATenthOfAPixelAtEverySize) {
+  for (const auto& [width, height] : std::vector<std::pair<int, int>>{
+           {128, 96}, {64, 48}, {61, 45}, {43, 33}}) {
+    SyntheticOptions scene_options;
+    scene_options.width = 128;
+    scene_options.height = 96;
+    scene_options.focal_length = 160;
+    scene_options.num_sources = 1;
+    scene_options.roll = 0.5 * M_PI;
+    scene_options.scaled_width = width;
+    scene_options.scaled_height = height;
+    const SyntheticPlane scene(scene_options);
+    const auto estimate = EstimateDepth(PhotometricOptions(), scene.problem());
+    ASSERT_TRUE(estimate);
+    constexpr int kMargin = 6;
+    std::vector<double> errors;
+    Eigen::Vector2d sum(0, 0);
+    for (int row = kMargin; row < height - kMargin; ++row) {
+      for (int col = kMargin; col < width - kMargin; ++col) {
+        const Eigen::Vector2d truth =
+            SeenAt(scene.problem(), row, col, scene.depth().At(row, col));
+        if (truth(0) < kMargin || truth(1) < kMargin ||
+            truth(0) > width - kMargin || truth(1) > height - kMargin) {
+          continue;
+        }
+        const Eigen::Vector2d error =
+            SeenAt(scene.problem(), row, col, estimate->depth.At(row, col)) -
+            truth;
+        errors.push_back(error.norm());
+        sum += error;
+      }
+    }
+    ASSERT_GT(errors.size(), 0.2 * width * height);
+    const auto worst_of_most = errors.begin() + errors.size() * 9 / 10;
+    std::nth_element(errors.begin(), worst_of_most, errors.end());
+    EXPECT_LT(*worst_of_most, 0.1) << width << "x" << height;
+    EXPECT_LT(sum.norm() / errors.size(), 0.05) << width << "x" << height;
+  }
 }
 
 TEST(EstimateDepth, GeometricPassRepairsABadStart) {

@@ -1,4 +1,4 @@
-#include "src/mvs/hypotheses.h"
+#include "src/mvs/sweep/hypotheses.h"
 
 #include <gtest/gtest.h>
 

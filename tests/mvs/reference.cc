@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "src/mvs/random.h"
+#include "src/mvs/sweep/random.h"
 
 namespace tapa::reference {
 namespace {
@@ -48,7 +48,8 @@ RelativePose FromReference(const Problem& problem, int m) {
 Vector3d ToEigen(const Vec3& v) { return Vector3d(v.x, v.y, v.z); }
 
 Vector3d Ray(const Problem& problem, int row, int col) {
-  return Intrinsics(problem.reference).inverse() * Vector3d(col, row, 1);
+  return Intrinsics(problem.reference).inverse() *
+         Vector3d(col + 0.5, row + 0.5, 1);
 }
 
 Matrix3d Homography(const Problem& problem, int row, int col,
@@ -68,14 +69,16 @@ double Pixel(const Map<uint8_t>& image, int row, int col) {
   return inside ? image.At(row, col) / 255.0 : 0.0;
 }
 
+// Between the centres of pixels, which are at (col + 0.5, row + 0.5).
 double Bilinear(const Map<uint8_t>& image, double x, double y) {
-  if (!(x > -1 && y > -1 && x < image.width() && y < image.height())) {
+  if (!(x > -0.5 && y > -0.5 && x < image.width() + 0.5 &&
+        y < image.height() + 0.5)) {
     return 0;
   }
-  const int col = static_cast<int>(std::floor(x));
-  const int row = static_cast<int>(std::floor(y));
-  const double fx = x - col;
-  const double fy = y - row;
+  const int col = static_cast<int>(std::floor(x - 0.5));
+  const int row = static_cast<int>(std::floor(y - 0.5));
+  const double fx = x - 0.5 - col;
+  const double fy = y - 0.5 - row;
   return (1 - fy) * ((1 - fx) * Pixel(image, row, col) +
                      fx * Pixel(image, row, col + 1)) +
          fy * ((1 - fx) * Pixel(image, row + 1, col) +
@@ -100,7 +103,7 @@ double PhotometricCost(const Options& options, const Problem& problem, int row,
           std::exp(-(dx * dx + dy * dy) / (2 * sigma_spatial * sigma_spatial) -
                    difference * difference /
                        (2 * options.sigma_color * options.sigma_color));
-      const Vector3d p = H * Vector3d(col + dx, row + dy, 1);
+      const Vector3d p = H * Vector3d(col + dx + 0.5, row + dy + 0.5, 1);
       const double source = p(2) > 0 ? Bilinear(*problem.sources[m].image,
                                                 p(0) / p(2), p(1) / p(2))
                                      : 0;
@@ -134,8 +137,8 @@ double GeometricCost(const Options& options, const Problem& problem, int row,
     return max_cost;
   }
   const Vector3d q = p / p(2);
-  const int source_col = static_cast<int>(std::floor(q(0) + 0.5));
-  const int source_row = static_cast<int>(std::floor(q(1) + 0.5));
+  const int source_col = static_cast<int>(std::floor(q(0)));
+  const int source_row = static_cast<int>(std::floor(q(1)));
   if (source_col < 0 || source_row < 0 || source_col >= source.depth->width() ||
       source_row >= source.depth->height()) {
     return max_cost;
@@ -149,7 +152,7 @@ double GeometricCost(const Options& options, const Problem& problem, int row,
       (pose.R.transpose() *
        (source_depth * (Intrinsics(source).inverse() * q) - pose.t));
   const double error =
-      std::hypot(col - back(0) / back(2), row - back(1) / back(2));
+      std::hypot(col + 0.5 - back(0) / back(2), row + 0.5 - back(1) / back(2));
   return error < max_cost ? error : max_cost;
 }
 
@@ -210,8 +213,8 @@ double Prior(const Options& options, const Problem& problem, int row, int col,
   for (int i = 0; i < 4; ++i) {
     const double* a = corners[i];
     const double* b = corners[(i + 1) % 4];
-    const Vector3d p = H * Vector3d(col + a[0], row + a[1], 1);
-    const Vector3d q = H * Vector3d(col + b[0], row + b[1], 1);
+    const Vector3d p = H * Vector3d(col + 0.5 + a[0], row + 0.5 + a[1], 1);
+    const Vector3d q = H * Vector3d(col + 0.5 + b[0], row + 0.5 + b[1], 1);
     area += 0.5 * (p(0) / p(2) * q(1) / q(2) - q(0) / q(2) * p(1) / p(2));
   }
   const double size = 2 * r + 1;

@@ -4,8 +4,9 @@
 #include <vector>
 
 #include "src/mvs/cpu/problem_data.h"
-#include "src/mvs/estimate_depth.h"
-#include "src/mvs/plane.h"
+#include "src/mvs/options.h"
+#include "src/mvs/problem.h"
+#include "src/mvs/sweep/plane.h"
 
 // The algorithm once more, as literally and slowly as possible, in double
 // precision and without sharing code with the engine but the random numbers:
@@ -37,7 +38,7 @@ struct State {
   Map<Vec3> normal;
   std::vector<double> cost;
   std::vector<double> prob;
-  // The hypothesis (src/mvs/sweep.h) that each pixel chose last.
+  // The hypothesis (src/mvs/sweep/hypotheses.h) that each pixel chose last.
   Map<uint8_t> chosen;
 };
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "src/mvs/camera_table.h"
+#include "src/mvs/sweep/hypotheses.h"
 
 namespace tapa {
 

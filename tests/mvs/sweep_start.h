@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "src/mvs/cpu/problem_data.h"
-#include "src/mvs/sweep.h"
+#include "src/mvs/sweep/sweep_params.h"
 #include "tests/mvs/synthetic.h"
 
 namespace tapa {

@@ -37,7 +37,9 @@ Camera RandomCamera(const SyntheticOptions& options, bool reference,
   camera.cy = 0.5 * options.height - 0.5;
   // The world is the reference camera's frame, moved and turned a bit.
   const double angle = reference ? 0 : 0.08;
+  const double roll = reference ? 0 : options.roll;
   const Eigen::Matrix3d turn =
+      Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitZ()) *
       (Eigen::AngleAxisd(angle * uniform(*random), Eigen::Vector3d::UnitX()) *
        Eigen::AngleAxisd(angle * uniform(*random), Eigen::Vector3d::UnitY()) *
        Eigen::AngleAxisd(angle * uniform(*random), Eigen::Vector3d::UnitZ()))
@@ -68,14 +70,29 @@ Camera RandomCamera(const SyntheticOptions& options, bool reference,
   return camera;
 }
 
+// The camera of a photograph that is scaled.
+Camera Scaled(Camera camera, double scale_x, double scale_y) {
+  camera.fx *= scale_x;
+  camera.cx *= scale_x;
+  camera.fy *= scale_y;
+  camera.cy *= scale_y;
+  return camera;
+}
+
 }  // namespace
 
 SyntheticPlane::SyntheticPlane(const SyntheticOptions& options) {
   std::mt19937 random(options.seed);
   const int num_views = options.num_sources + 1;
+  const int width =
+      options.scaled_width > 0 ? options.scaled_width : options.width;
+  const int height =
+      options.scaled_height > 0 ? options.scaled_height : options.height;
   std::vector<Camera> cameras;
   for (int i = 0; i < num_views; ++i) {
-    cameras.push_back(RandomCamera(options, i == 0, &random));
+    cameras.push_back(Scaled(RandomCamera(options, i == 0, &random),
+                             static_cast<double>(width) / options.width,
+                             static_cast<double>(height) / options.height));
   }
 
   using Matrix = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
@@ -89,20 +106,20 @@ SyntheticPlane::SyntheticPlane(const SyntheticOptions& options) {
   const Eigen::Map<const Eigen::Vector3d> t_ref(cameras[0].t.data());
 
   constexpr uint8_t kWallIntensity = 150;
-  wall_ = Map<uint8_t>(options.width, options.height, 0);
+  wall_ = Map<uint8_t>(width, height, 0);
   for (const Camera& camera : cameras) {
     const Eigen::Map<const Matrix> R(camera.R.data());
     const Eigen::Map<const Eigen::Vector3d> t(camera.t.data());
     // From this camera's frame to the reference camera's.
     const Eigen::Matrix3d to_ref = R_ref * R.transpose();
     const Eigen::Vector3d center = t_ref - to_ref * t;
-    Map<uint8_t> image(options.width, options.height);
-    Map<float> depth(options.width, options.height);
-    for (int row = 0; row < options.height; ++row) {
-      for (int col = 0; col < options.width; ++col) {
+    Map<uint8_t> image(width, height);
+    Map<float> depth(width, height);
+    for (int row = 0; row < height; ++row) {
+      for (int col = 0; col < width; ++col) {
         const Eigen::Vector3d ray =
-            to_ref * Eigen::Vector3d((col - camera.cx) / camera.fx,
-                                     (row - camera.cy) / camera.fy, 1);
+            to_ref * Eigen::Vector3d((col + 0.5 - camera.cx) / camera.fx,
+                                     (row + 0.5 - camera.cy) / camera.fy, 1);
         const double d = n.dot(anchor - center) / n.dot(ray);
         const Eigen::Vector3d point = center + d * ray;
         depth.At(row, col) = static_cast<float>(d);

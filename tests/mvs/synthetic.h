@@ -4,7 +4,7 @@
 #include <random>
 #include <vector>
 
-#include "src/mvs/estimate_depth.h"
+#include "src/mvs/problem.h"
 
 namespace tapa {
 
@@ -21,6 +21,13 @@ struct SyntheticOptions {
   double focal_length = 60.0;
   // Spread of the source cameras' centres around the reference camera.
   double baseline = 0.6;
+  // Rotation of the source cameras about their optical axes, in radians, on top
+  // of a small one at random.
+  double roll = 0;
+  // Size of the images, in pixels, that photographs of width x height are
+  // scaled to; 0: as they are.
+  int scaled_width = 0;
+  int scaled_height = 0;
   // Half width of a stripe without texture, in scene units: a wall in the
   // middle of the reference image, from its upper to its lower border. 0: none.
   double wall = 0;

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "src/mvs/estimate_depth.h"
-#include "src/mvs/sweep.h"
+#include "src/mvs/sweep/hypotheses.h"
 #include "src/mvs/tapa/stages.h"
 #include "tests/mvs/synthetic.h"
 
@@ -88,8 +88,9 @@ void ExpectSound(const Problem& problem, const Estimate& estimate) {
       if (depth == 0) {
         EXPECT_EQ(Dot(normal, normal), 0);
       } else {
-        const Vec3 ray = {static_cast<float>((col - camera.cx) / camera.fx),
-                          static_cast<float>((row - camera.cy) / camera.fy), 1};
+        const Vec3 ray = {
+            static_cast<float>((col + 0.5 - camera.cx) / camera.fx),
+            static_cast<float>((row + 0.5 - camera.cy) / camera.fy), 1};
         EXPECT_NEAR(Dot(normal, normal), 1, 1e-4);
         EXPECT_LT(Dot(normal, ray), 1e-6f);
       }

@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "src/mvs/hypotheses.h"
+#include "src/mvs/sweep/hypotheses.h"
 #include "src/mvs/tapa/fill.h"
 #include "tests/mvs/synthetic.h"
 #include "tests/mvs/tapa_reference.h"

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "src/mvs/map.h"
-#include "src/mvs/plane_set.h"
+#include "src/base/map.h"
+#include "src/mvs/sweep/scene_plane.h"
 #include "src/mvs/tapa/fill.h"
 #include "src/mvs/tapa/speckles.h"
 #include "src/mvs/tapa/superpixels.h"

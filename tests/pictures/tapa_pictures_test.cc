@@ -11,7 +11,7 @@
 #include <tuple>
 #include <vector>
 
-#include "src/mvs/sweep.h"
+#include "src/mvs/sweep/hypotheses.h"
 #include "src/pictures/color_map.h"
 
 namespace tapa {

@@ -1,10 +1,9 @@
-#include "src/mvs/backend.h"
-
 #include <memory>
 #include <utility>
 #include <vector>
 
-#include "src/mvs/cpu/parallel.h"
+#include "src/base/parallel.h"
+#include "src/mvs/backends.h"
 #include "src/mvs/cpu/problem_data.h"
 #include "src/mvs/cpu/sweep.h"
 

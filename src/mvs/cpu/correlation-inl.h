@@ -13,10 +13,10 @@
 
 #include <cstring>
 
-#include "src/mvs/correlation.h"
 #include "src/mvs/cpu/source_image.h"
 #include "src/mvs/cpu/window.h"
-#include "src/mvs/source_cameras.h"
+#include "src/mvs/sweep/correlation.h"
+#include "src/mvs/sweep/source_cameras.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tapa {

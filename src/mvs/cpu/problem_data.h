@@ -3,12 +3,13 @@
 
 #include <vector>
 
+#include "src/base/uninitialized_vector.h"
 #include "src/mvs/camera_table.h"
 #include "src/mvs/cpu/source_image.h"
 #include "src/mvs/cpu/window.h"
-#include "src/mvs/estimate_depth.h"
+#include "src/mvs/options.h"
 #include "src/mvs/plane_set.h"
-#include "src/mvs/uninitialized_vector.h"
+#include "src/mvs/problem.h"
 
 namespace tapa {
 

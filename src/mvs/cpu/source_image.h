@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
+#include "src/base/map.h"
 #include "src/mvs/cpu/aligned.h"
-#include "src/mvs/map.h"
 
 namespace tapa {
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "src/mvs/sweep/sweep_pixel.h"
+
 // Vectors whose size is not known to the compiler cannot be kept in structures,
 // as correlation-inl.h does; Arm machines use NEON instead.
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)

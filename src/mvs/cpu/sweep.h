@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "src/mvs/cpu/problem_data.h"
-#include "src/mvs/sweep.h"
+#include "src/mvs/sweep/hypotheses.h"
+#include "src/mvs/sweep/pixel_scratch.h"
+#include "src/mvs/sweep/sweep_params.h"
 
 namespace tapa {
 

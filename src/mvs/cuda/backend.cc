@@ -1,5 +1,3 @@
-#include "src/mvs/backend.h"
-
 #include <algorithm>
 #include <chrono>
 #include <cstring>
@@ -7,12 +5,14 @@
 #include <utility>
 #include <vector>
 
+#include "src/mvs/backends.h"
 #include "src/mvs/camera_table.h"
+#include "src/mvs/cuda/device_profile.h"
 #include "src/mvs/cuda/kernels.h"
 #include "src/mvs/cuda/memory.h"
 #include "src/mvs/cuda/memory_plan.h"
 #include "src/mvs/cuda/memory_share.h"
-#include "src/mvs/devices.h"
+#include "src/mvs/device_error.h"
 
 namespace tapa {
 namespace {

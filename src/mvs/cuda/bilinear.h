@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "src/mvs/host_device.h"
+#include "src/mvs/sweep/host_device.h"
 
 namespace tapa {
 

@@ -7,7 +7,8 @@
 #include "src/mvs/cuda/lanes.h"
 #include "src/mvs/cuda/memory.h"
 #include "src/mvs/cuda/sweep_body.h"
-#include "src/mvs/devices.h"
+#include "src/mvs/device_error.h"
+#include "src/mvs/sweep/lanes.h"
 
 namespace tapa {
 

@@ -3,15 +3,15 @@
 
 #include <cuda_runtime.h>
 
-#include "src/mvs/host_device.h"
-#include "src/mvs/sweep.h"
+#include "src/mvs/sweep/host_device.h"
+#include "src/mvs/sweep/hypotheses.h"
 
 namespace tapa {
 
-// The 32 lanes of a warp share a pixel (see SerialLanes in sweep.h). Loops over
-// views and over the samples of a patch are shared out among all of them;
-// correlations among groups, whose lanes take neighbouring samples, so that
-// their texture reads meet in the same lines of the cache.
+// The 32 lanes of a warp share a pixel (see SerialLanes in sweep/lanes.h).
+// Loops over views and over the samples of a patch are shared out among all of
+// them; correlations among groups, whose lanes take neighbouring samples, so
+// that their texture reads meet in the same lines of the cache.
 //
 // Only for code of a device; on the host it means nothing.
 struct WarpLanes {

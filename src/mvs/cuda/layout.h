@@ -3,9 +3,10 @@
 
 #include <cstdint>
 
-#include "src/mvs/host_device.h"
 #include "src/mvs/options.h"
-#include "src/mvs/sweep.h"
+#include "src/mvs/sweep/host_device.h"
+#include "src/mvs/sweep/hypotheses.h"
+#include "src/mvs/sweep/pixel_scratch.h"
 
 namespace tapa {
 

@@ -7,7 +7,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "src/mvs/devices.h"
+#include "src/mvs/device_error.h"
 
 namespace tapa {
 

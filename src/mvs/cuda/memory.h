@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "src/mvs/map.h"
+#include "src/base/map.h"
 
 namespace tapa {
 

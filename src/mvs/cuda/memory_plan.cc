@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "src/mvs/cuda/packed_plane.h"
-#include "src/mvs/devices.h"
 
 namespace tapa {
 namespace {

@@ -3,7 +3,8 @@
 
 #include <cstddef>
 
-#include "src/mvs/estimate_depth.h"
+#include "src/mvs/options.h"
+#include "src/mvs/problem.h"
 
 namespace tapa {
 
@@ -37,6 +38,20 @@ struct MemoryPlan {
   // Planes.
   size_t previous = 0;
 };
+
+// Bytes of device memory that the CUDA backend needs. For n source views and a
+// reference view, all of w x h pixels:
+//
+//   w h (8 + 4 n + 1)     estimate, costs and probabilities, reference image
+//   w h n                 source images
+//   4 w h n               their depth maps, in the geometric pass
+//   6 w h                 with TAPA: textureness and planes
+//   about 8 n max(w, h)^1.5   messages on the way
+//
+// which makes 199 bytes per pixel at 20 views of 3200 x 2130, in the geometric
+// pass with TAPA. What CUDA itself takes comes on top.
+size_t EstimateDepthDeviceMemory(const Options& options,
+                                 const Problem& problem);
 
 }  // namespace tapa
 

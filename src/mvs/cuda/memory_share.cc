@@ -6,7 +6,7 @@
 #include <string>
 
 #include "src/mvs/cuda/memory.h"
-#include "src/mvs/devices.h"
+#include "src/mvs/device_error.h"
 
 namespace tapa {
 namespace {

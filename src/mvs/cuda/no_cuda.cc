@@ -1,6 +1,7 @@
 // What the program has in place of the CUDA backend where it is built without.
 
-#include "src/mvs/backend.h"
+#include "src/mvs/backends.h"
+#include "src/mvs/device_error.h"
 #include "src/mvs/devices.h"
 
 namespace tapa {

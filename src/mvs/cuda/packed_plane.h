@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "src/mvs/plane.h"
+#include "src/mvs/sweep/plane.h"
 
 namespace tapa {
 

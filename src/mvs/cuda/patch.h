@@ -1,10 +1,10 @@
 #ifndef TAPA_SRC_MVS_CUDA_PATCH_H_
 #define TAPA_SRC_MVS_CUDA_PATCH_H_
 
-#include "src/mvs/correlation.h"
 #include "src/mvs/cuda/layout.h"
-#include "src/mvs/math.h"
-#include "src/mvs/source_cameras.h"
+#include "src/mvs/sweep/correlation.h"
+#include "src/mvs/sweep/math.h"
+#include "src/mvs/sweep/source_cameras.h"
 
 // The code below takes `Textures`, what a kernel reads images through (see
 // device_textures.h; tests have their own on the host):

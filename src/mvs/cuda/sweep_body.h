@@ -3,6 +3,8 @@
 
 #include "src/mvs/cuda/patch.h"
 #include "src/mvs/cuda/sweep_task.h"
+#include "src/mvs/plane_set.h"
+#include "src/mvs/sweep/sweep_pixel.h"
 
 // What kernels do, as functions that also run on the host, for tests: `Lanes`
 // are those of one pixel, `Sizes` is one of layout.h, `Textures` is described

@@ -6,8 +6,8 @@
 
 #include "src/mvs/cuda/layout.h"
 #include "src/mvs/cuda/packed_plane.h"
-#include "src/mvs/plane_set.h"
-#include "src/mvs/sweep.h"
+#include "src/mvs/sweep/scene_plane.h"
+#include "src/mvs/sweep/sweep_params.h"
 
 namespace tapa {
 

@@ -4,7 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "src/mvs/estimate_depth.h"
+#include "src/mvs/options.h"
+#include "src/mvs/problem.h"
 #include "src/mvs/tapa/superpixel_planes.h"
 
 // Beyond TAPA-MVS: which estimates to believe in after the last sweep, and how

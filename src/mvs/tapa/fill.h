@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
-#include "src/mvs/map.h"
-#include "src/mvs/plane.h"
+#include "src/base/map.h"
+#include "src/mvs/sweep/plane.h"
 
 namespace tapa {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "src/mvs/plane_set.h"
+#include "src/mvs/sweep/scene_plane.h"
 
 namespace tapa {
 

@@ -1,7 +1,7 @@
 #ifndef TAPA_SRC_MVS_TAPA_SPECKLES_H_
 #define TAPA_SRC_MVS_TAPA_SPECKLES_H_
 
-#include "src/mvs/map.h"
+#include "src/base/map.h"
 
 namespace tapa {
 

@@ -4,7 +4,9 @@
 #include <vector>
 
 #include "src/mvs/backend.h"
-#include "src/mvs/estimate_depth.h"
+#include "src/mvs/control.h"
+#include "src/mvs/options.h"
+#include "src/mvs/problem.h"
 #include "src/mvs/tapa/completion.h"
 #include "src/mvs/tapa/speckles.h"
 #include "src/mvs/tapa/superpixel_planes.h"
@@ -18,7 +20,7 @@ struct TapaRecord {
   // Without superpixels where that part is off.
   Segmentation fine;
   Segmentation coarse;
-  // Hypothesis (sweep.h) that each pixel chose in the last sweep.
+  // Hypothesis (sweep/hypotheses.h) that each pixel chose in the last sweep.
   Map<uint8_t> chosen;
   // Depth after the last sweep.
   Map<float> swept_depth;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "src/mvs/random.h"
+#include "src/mvs/sweep/random.h"
 
 namespace tapa {
 namespace {

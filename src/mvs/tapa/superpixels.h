@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "src/mvs/map.h"
+#include "src/base/map.h"
 
 namespace tapa {
 

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "src/mvs/map.h"
+#include "src/base/map.h"
 
 namespace tapa {
 

@@ -1,5 +1,5 @@
-#ifndef TAPA_SRC_FILES_FAILURE_H_
-#define TAPA_SRC_FILES_FAILURE_H_
+#ifndef TAPA_SRC_BASE_FAILURE_H_
+#define TAPA_SRC_BASE_FAILURE_H_
 
 #include <stdexcept>
 
@@ -13,4 +13,4 @@ class Failure : public std::runtime_error {
 
 }  // namespace tapa
 
-#endif  // TAPA_SRC_FILES_FAILURE_H_
+#endif  // TAPA_SRC_BASE_FAILURE_H_

@@ -1,9 +1,9 @@
-#ifndef TAPA_SRC_MVS_PLANE_H_
-#define TAPA_SRC_MVS_PLANE_H_
+#ifndef TAPA_SRC_MVS_SWEEP_PLANE_H_
+#define TAPA_SRC_MVS_SWEEP_PLANE_H_
 
 #include <cmath>
 
-#include "src/mvs/vec3.h"
+#include "src/base/vec3.h"
 
 namespace tapa {
 
@@ -15,15 +15,16 @@ struct Plane {
   Vec3 normal;
 };
 
-// Intrinsics of the reference camera in the form that sweeps need.
+// Intrinsics of the reference camera in the form that sweeps need: for indices
+// of pixels (see CameraTable).
 struct RefCamera {
   float inv_fx;
   float inv_fy;
-  // -cx / fx and -cy / fy.
+  // (0.5 - cx) / fx and (0.5 - cy) / fy.
   float offset_x;
   float offset_y;
 
-  // Ray of a pixel in the camera's frame, scaled to depth 1.
+  // Ray of a pixel's centre in the camera's frame, scaled to depth 1.
   TAPA_INLINE Vec3 Ray(float row, float col) const {
     return {inv_fx * col + offset_x, inv_fy * row + offset_y, 1.0f};
   }
@@ -53,4 +54,4 @@ TAPA_INLINE Vec3 HomographyVector(const RefCamera& camera, const Plane& plane,
 
 }  // namespace tapa
 
-#endif  // TAPA_SRC_MVS_PLANE_H_
+#endif  // TAPA_SRC_MVS_SWEEP_PLANE_H_

@@ -1,11 +1,11 @@
-#ifndef TAPA_SRC_MVS_MATH_H_
-#define TAPA_SRC_MVS_MATH_H_
+#ifndef TAPA_SRC_MVS_SWEEP_MATH_H_
+#define TAPA_SRC_MVS_SWEEP_MATH_H_
 
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 
-#include "src/mvs/host_device.h"
+#include "src/mvs/sweep/host_device.h"
 
 namespace tapa {
 
@@ -56,4 +56,4 @@ TAPA_INLINE void SinCosSmall(float a, float* sin_a, float* cos_a) {
 
 }  // namespace tapa
 
-#endif  // TAPA_SRC_MVS_MATH_H_
+#endif  // TAPA_SRC_MVS_SWEEP_MATH_H_

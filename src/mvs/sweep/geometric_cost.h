@@ -1,9 +1,9 @@
-#ifndef TAPA_SRC_MVS_GEOMETRIC_COST_H_
-#define TAPA_SRC_MVS_GEOMETRIC_COST_H_
+#ifndef TAPA_SRC_MVS_SWEEP_GEOMETRIC_COST_H_
+#define TAPA_SRC_MVS_SWEEP_GEOMETRIC_COST_H_
 
 #include <cmath>
 
-#include "src/mvs/source_cameras.h"
+#include "src/mvs/sweep/source_cameras.h"
 
 namespace tapa {
 
@@ -17,7 +17,8 @@ TAPA_INLINE Vec3 TransferPoint(const float* const M[9], const float* const v[3],
           depth * (M[6][m] * col + M[7][m] * row + M[8][m]) + v[2][m]};
 }
 
-// A reference pixel's place in a source image, in pixels of that image;
+// A reference pixel's place in a source image: whole numbers are the centres of
+// that image's pixels;
 // (-1, -1) for points that are not in front of the camera.
 struct Projection {
   float col;
@@ -53,4 +54,4 @@ TAPA_INLINE float ReprojectionError(const SourceCameras& views, int m,
 
 }  // namespace tapa
 
-#endif  // TAPA_SRC_MVS_GEOMETRIC_COST_H_
+#endif  // TAPA_SRC_MVS_SWEEP_GEOMETRIC_COST_H_

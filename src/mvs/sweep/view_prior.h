@@ -1,10 +1,10 @@
-#ifndef TAPA_SRC_MVS_VIEW_PRIOR_H_
-#define TAPA_SRC_MVS_VIEW_PRIOR_H_
+#ifndef TAPA_SRC_MVS_SWEEP_VIEW_PRIOR_H_
+#define TAPA_SRC_MVS_SWEEP_VIEW_PRIOR_H_
 
 #include <cmath>
 
-#include "src/mvs/math.h"
-#include "src/mvs/source_cameras.h"
+#include "src/mvs/sweep/math.h"
+#include "src/mvs/sweep/source_cameras.h"
 
 namespace tapa {
 
@@ -91,4 +91,4 @@ struct ViewPrior {
 
 }  // namespace tapa
 
-#endif  // TAPA_SRC_MVS_VIEW_PRIOR_H_
+#endif  // TAPA_SRC_MVS_SWEEP_VIEW_PRIOR_H_

@@ -1,5 +1,5 @@
-#ifndef TAPA_SRC_MVS_UNINITIALIZED_VECTOR_H_
-#define TAPA_SRC_MVS_UNINITIALIZED_VECTOR_H_
+#ifndef TAPA_SRC_BASE_UNINITIALIZED_VECTOR_H_
+#define TAPA_SRC_BASE_UNINITIALIZED_VECTOR_H_
 
 #include <memory>
 #include <new>
@@ -33,4 +33,4 @@ using UninitializedVector = std::vector<T, UninitializedAllocator<T>>;
 
 }  // namespace tapa
 
-#endif  // TAPA_SRC_MVS_UNINITIALIZED_VECTOR_H_
+#endif  // TAPA_SRC_BASE_UNINITIALIZED_VECTOR_H_

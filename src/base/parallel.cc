@@ -1,4 +1,4 @@
-#include "src/mvs/cpu/parallel.h"
+#include "src/base/parallel.h"
 
 #include <algorithm>
 #include <exception>

@@ -1,10 +1,10 @@
-#ifndef TAPA_SRC_MVS_CORRELATION_H_
-#define TAPA_SRC_MVS_CORRELATION_H_
+#ifndef TAPA_SRC_MVS_SWEEP_CORRELATION_H_
+#define TAPA_SRC_MVS_SWEEP_CORRELATION_H_
 
 #include <cmath>
 
-#include "src/mvs/host_device.h"
-#include "src/mvs/view_selection.h"
+#include "src/mvs/sweep/host_device.h"
+#include "src/mvs/sweep/view_selection.h"
 
 namespace tapa {
 
@@ -34,4 +34,4 @@ TAPA_INLINE float CostOfMoments(float reference_variance,
 
 }  // namespace tapa
 
-#endif  // TAPA_SRC_MVS_CORRELATION_H_
+#endif  // TAPA_SRC_MVS_SWEEP_CORRELATION_H_

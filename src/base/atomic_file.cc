@@ -1,4 +1,4 @@
-#include "src/files/atomic_file.h"
+#include "src/base/atomic_file.h"
 
 #include <dirent.h>
 #include <fcntl.h>
@@ -11,7 +11,7 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "src/files/failure.h"
+#include "src/base/failure.h"
 
 namespace tapa {
 namespace {

@@ -1,5 +1,5 @@
-#ifndef TAPA_SRC_MVS_CPU_PARALLEL_H_
-#define TAPA_SRC_MVS_CPU_PARALLEL_H_
+#ifndef TAPA_SRC_BASE_PARALLEL_H_
+#define TAPA_SRC_BASE_PARALLEL_H_
 
 #include <condition_variable>
 #include <functional>
@@ -53,4 +53,4 @@ class ThreadTeam {
 
 }  // namespace tapa
 
-#endif  // TAPA_SRC_MVS_CPU_PARALLEL_H_
+#endif  // TAPA_SRC_BASE_PARALLEL_H_

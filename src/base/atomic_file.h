@@ -1,5 +1,5 @@
-#ifndef TAPA_SRC_FILES_ATOMIC_FILE_H_
-#define TAPA_SRC_FILES_ATOMIC_FILE_H_
+#ifndef TAPA_SRC_BASE_ATOMIC_FILE_H_
+#define TAPA_SRC_BASE_ATOMIC_FILE_H_
 
 #include <cstddef>
 #include <string>
@@ -39,4 +39,4 @@ void RemoveStaleTemporaries(const std::string& folder);
 
 }  // namespace tapa
 
-#endif  // TAPA_SRC_FILES_ATOMIC_FILE_H_
+#endif  // TAPA_SRC_BASE_ATOMIC_FILE_H_

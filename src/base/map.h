@@ -1,5 +1,5 @@
-#ifndef TAPA_SRC_MVS_MAP_H_
-#define TAPA_SRC_MVS_MAP_H_
+#ifndef TAPA_SRC_BASE_MAP_H_
+#define TAPA_SRC_BASE_MAP_H_
 
 #include <cstddef>
 #include <cstdint>
@@ -49,4 +49,4 @@ struct Rgb {
 
 }  // namespace tapa
 
-#endif  // TAPA_SRC_MVS_MAP_H_
+#endif  // TAPA_SRC_BASE_MAP_H_

@@ -1,9 +1,9 @@
-#ifndef TAPA_SRC_MVS_VIEW_SELECTION_H_
-#define TAPA_SRC_MVS_VIEW_SELECTION_H_
+#ifndef TAPA_SRC_MVS_SWEEP_VIEW_SELECTION_H_
+#define TAPA_SRC_MVS_SWEEP_VIEW_SELECTION_H_
 
 #include <cmath>
 
-#include "src/mvs/math.h"
+#include "src/mvs/sweep/math.h"
 
 namespace tapa {
 
@@ -89,4 +89,4 @@ TAPA_INLINE float DecodeProb(uint16_t code) {
 
 }  // namespace tapa
 
-#endif  // TAPA_SRC_MVS_VIEW_SELECTION_H_
+#endif  // TAPA_SRC_MVS_SWEEP_VIEW_SELECTION_H_

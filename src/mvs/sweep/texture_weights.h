@@ -1,7 +1,7 @@
-#ifndef TAPA_SRC_MVS_TEXTURE_WEIGHTS_H_
-#define TAPA_SRC_MVS_TEXTURE_WEIGHTS_H_
+#ifndef TAPA_SRC_MVS_SWEEP_TEXTURE_WEIGHTS_H_
+#define TAPA_SRC_MVS_SWEEP_TEXTURE_WEIGHTS_H_
 
-#include "src/mvs/host_device.h"
+#include "src/mvs/sweep/host_device.h"
 
 namespace tapa {
 
@@ -35,4 +35,4 @@ struct TextureWeights {
 
 }  // namespace tapa
 
-#endif  // TAPA_SRC_MVS_TEXTURE_WEIGHTS_H_
+#endif  // TAPA_SRC_MVS_SWEEP_TEXTURE_WEIGHTS_H_

@@ -1,9 +1,9 @@
-#ifndef TAPA_SRC_MVS_RANDOM_H_
-#define TAPA_SRC_MVS_RANDOM_H_
+#ifndef TAPA_SRC_MVS_SWEEP_RANDOM_H_
+#define TAPA_SRC_MVS_SWEEP_RANDOM_H_
 
 #include <cstdint>
 
-#include "src/mvs/host_device.h"
+#include "src/mvs/sweep/host_device.h"
 
 namespace tapa {
 
@@ -47,4 +47,4 @@ enum Draw : uint32_t {
 
 }  // namespace tapa
 
-#endif  // TAPA_SRC_MVS_RANDOM_H_
+#endif  // TAPA_SRC_MVS_SWEEP_RANDOM_H_

@@ -1,14 +1,15 @@
-#ifndef TAPA_SRC_MVS_SOURCE_CAMERAS_H_
-#define TAPA_SRC_MVS_SOURCE_CAMERAS_H_
+#ifndef TAPA_SRC_MVS_SWEEP_SOURCE_CAMERAS_H_
+#define TAPA_SRC_MVS_SWEEP_SOURCE_CAMERAS_H_
 
-#include "src/mvs/vec3.h"
+#include "src/base/vec3.h"
 
 namespace tapa {
 
 // Geometry of all source views relative to the reference view, one array per
-// coefficient so that loops over the views vectorize. With reference
-// intrinsics K, source intrinsics K_m and relative pose (R, t), which takes
-// points from the reference frame to the source frame:
+// coefficient so that loops over the views vectorize. Pixels are named by their
+// indices, p = (col, row, 1)^T. With the intrinsics for these (see
+// CameraTable), K of the reference and K_m of the source, and the relative pose
+// (R, t), which takes points from the reference frame to the source frame:
 //
 //   A = K_m R K^-1, b = K_m t:      reference pixel p at depth d projects to
 //                                   d A p + b; a plane maps p to (A + b m^T) p
@@ -86,4 +87,4 @@ TAPA_INLINE Warp ComputeWarp(const SourceCameras& views, int m, float row,
 
 }  // namespace tapa
 
-#endif  // TAPA_SRC_MVS_SOURCE_CAMERAS_H_
+#endif  // TAPA_SRC_MVS_SWEEP_SOURCE_CAMERAS_H_

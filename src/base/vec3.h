@@ -1,7 +1,7 @@
-#ifndef TAPA_SRC_MVS_VEC3_H_
-#define TAPA_SRC_MVS_VEC3_H_
+#ifndef TAPA_SRC_BASE_VEC3_H_
+#define TAPA_SRC_BASE_VEC3_H_
 
-#include "src/mvs/host_device.h"
+#include "src/base/inline.h"
 
 namespace tapa {
 
@@ -27,4 +27,4 @@ TAPA_INLINE Vec3 operator-(const Vec3& a) { return {-a.x, -a.y, -a.z}; }
 
 }  // namespace tapa
 
-#endif  // TAPA_SRC_MVS_VEC3_H_
+#endif  // TAPA_SRC_BASE_VEC3_H_

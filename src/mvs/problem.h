@@ -1,0 +1,52 @@
+#ifndef TAPA_SRC_MVS_PROBLEM_H_
+#define TAPA_SRC_MVS_PROBLEM_H_
+
+#include <cstdint>
+#include <vector>
+
+#include "src/base/map.h"
+#include "src/base/uninitialized_vector.h"
+#include "src/base/vec3.h"
+#include "src/mvs/view.h"
+
+namespace tapa {
+
+// One reference view and the source views that its pixels are compared with.
+struct Problem {
+  View reference;
+  // At least one. Views may differ in size and camera.
+  std::vector<View> sources;
+  // Range of the first random depths, in scene units: 0 < min <= max.
+  float depth_min = 0;
+  float depth_max = 0;
+  // The reference photograph in colour, of the same size as its grey image,
+  // for TAPA's superpixels; not there: they see the grey image. Borrowed.
+  const Map<Rgb>* reference_color = nullptr;
+  // Where the geometric pass starts: depth in scene units and unit normals in
+  // the reference camera's frame, both of the reference image's size. Pixels
+  // whose depth is not positive or whose normal faces away from the camera
+  // start at random. Not used by the photometric pass.
+  Map<float> depth;
+  Map<Vec3> normal;
+};
+
+// The result: what is known of every pixel of the reference view.
+struct Estimate {
+  // Depth in scene units, 0 where the estimate was filtered.
+  Map<float> depth;
+  // Unit normals in the reference camera's frame, 0 where filtered.
+  Map<Vec3> normal;
+  // Probability that source view m sees a pixel, 0 to 1, at
+  // [pixel * sources + m], in fixed point: value / 65535.
+  UninitializedVector<uint16_t> selection_prob;
+  // With Options::filter or TAPA: bit m % 8 of byte [pixel * ceil(sources / 8)
+  // + m / 8] says whether source view m supports the estimate. TAPA's geometric
+  // pass looks at depths and angles only, not at selection probabilities.
+  std::vector<uint8_t> consistent;
+  // With TAPA: the hypothesis (sweep/hypotheses.h) that each pixel chose last.
+  Map<uint8_t> chosen;
+};
+
+}  // namespace tapa
+
+#endif  // TAPA_SRC_MVS_PROBLEM_H_

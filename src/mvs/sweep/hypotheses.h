@@ -1,0 +1,140 @@
+#ifndef TAPA_SRC_MVS_SWEEP_HYPOTHESES_H_
+#define TAPA_SRC_MVS_SWEEP_HYPOTHESES_H_
+
+#include <cmath>
+#include <cstdint>
+
+#include "src/mvs/sweep/math.h"
+#include "src/mvs/sweep/plane.h"
+#include "src/mvs/sweep/random.h"
+#include "src/mvs/sweep/sweep_params.h"
+#include "src/mvs/sweep/texture_weights.h"
+
+namespace tapa {
+
+// Hypotheses of a pixel, see docs/design.md. The smallest cost wins; of equal
+// ones the later.
+enum Hypothesis {
+  kCurrent,
+  kPropagated,
+  kRandom,
+  kRandomNormal,
+  kRandomDepth,
+  // From outside the sweep: planes of a fine and a coarse superpixel.
+  kFinePlane,
+  kCoarsePlane,
+  kNumHypotheses
+};
+
+// What a pixel brings to the sweep from outside.
+struct PixelGuide {
+  TextureWeights weights;
+  // Further hypotheses; depth 0: none.
+  Plane fine;
+  Plane coarse;
+};
+
+// Distinct depths among the hypotheses: current, propagated, random, and those
+// of the planes.
+constexpr int kNumDepths = 5;
+
+// Which of them a hypothesis has.
+TAPA_INLINE int DepthIndex(int hypothesis) {
+  return hypothesis == kPropagated                             ? 1
+         : hypothesis == kRandom || hypothesis == kRandomDepth ? 2
+         : hypothesis == kFinePlane                            ? 3
+         : hypothesis == kCoarsePlane                          ? 4
+                                                               : 0;
+}
+
+// A few hypotheses.
+struct HypothesisList {
+  static_assert(kNumHypotheses <= 8, "there are four bits for each");
+  uint32_t items = 0;
+  int count = 0;
+
+  TAPA_INLINE void Add(int hypothesis) {
+    items |= static_cast<uint32_t>(hypothesis) << (4 * count);
+    ++count;
+  }
+  TAPA_INLINE int At(int i) const { return (items >> (4 * i)) & 15u; }
+};
+
+// Uniform in [min_depth, max_depth).
+TAPA_INLINE float RandomDepth(const Random& random, float min_depth,
+                              float max_depth) {
+  return min_depth + random.Uniform(kDrawDepth) * (max_depth - min_depth);
+}
+
+// Uniform on the hemisphere of normals that face the camera.
+inline Vec3 RandomNormal(const Random& random, const Vec3& ray) {
+  const float z = 2.0f * random.Uniform(kDrawNormal) - 1.0f;
+  const float angle =
+      2.0f * 3.14159265358979f * random.Uniform(kDrawNormal + 1);
+  const float radius = std::sqrt(1.0f - z * z);
+  const Vec3 normal = {radius * std::cos(angle), radius * std::sin(angle), z};
+  return Dot(normal, ray) > 0.0f ? -normal : normal;
+}
+
+// Depth changed by at most the share `perturbation` of it.
+TAPA_INLINE float PerturbDepth(const Random& random, float perturbation,
+                               float depth) {
+  return RandomDepth(random, (1.0f - perturbation) * depth,
+                     (1.0f + perturbation) * depth);
+}
+
+// Normal rotated about the three axes by at most perturbation / 2 radians each
+// (perturbation at most 1). Where the result would face away from the camera,
+// tries again with half the angles, in the end keeps the normal.
+TAPA_INLINE Vec3 PerturbNormal(const Random& random, float perturbation,
+                               const Vec3& normal, const Vec3& ray) {
+  constexpr int kMaxNormalTrials = 4;
+  for (int trial = 0; trial < kMaxNormalTrials; ++trial) {
+    float s[3];
+    float c[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      const float angle =
+          (random.Uniform(kDrawNormal + 3 * trial + axis) - 0.5f) *
+          perturbation;
+      SinCosSmall(angle, &s[axis], &c[axis]);
+    }
+    // Rx Ry Rz n, one rotation after the other.
+    const Vec3 z = {c[2] * normal.x - s[2] * normal.y,
+                    s[2] * normal.x + c[2] * normal.y, normal.z};
+    const Vec3 y = {c[1] * z.x + s[1] * z.z, z.y, c[1] * z.z - s[1] * z.x};
+    const Vec3 x = {y.x, c[0] * y.y - s[0] * y.z, s[0] * y.y + c[0] * y.z};
+    if (Dot(x, ray) < 0.0f) {
+      return (1.0f / sqrtf(Dot(x, x))) * x;
+    }
+    perturbation *= 0.5f;
+  }
+  return normal;
+}
+
+// Whether a hypothesis can be true: in front of the camera, and facing it.
+TAPA_INLINE bool IsVisible(const Plane& plane, const Vec3& ray) {
+  return plane.depth > 0.0f && Dot(plane.normal, ray) < 0.0f;
+}
+
+// The planes of all hypotheses. What is no hypothesis has no visible plane.
+TAPA_INLINE void MakeHypotheses(const SweepParams& params, const Random& random,
+                                const Plane& current, const Plane& previous,
+                                const Vec3& previous_ray, const Vec3& ray,
+                                const PixelGuide& guide, Plane* planes) {
+  const float random_depth =
+      PerturbDepth(random, params.perturbation, current.depth);
+  const Vec3 random_normal =
+      PerturbNormal(random, params.perturbation, current.normal, ray);
+  planes[kCurrent] = current;
+  planes[kPropagated] = {PropagateDepth(previous, previous_ray, ray),
+                         previous.normal};
+  planes[kRandom] = {random_depth, random_normal};
+  planes[kRandomNormal] = {current.depth, random_normal};
+  planes[kRandomDepth] = {random_depth, current.normal};
+  planes[kFinePlane] = guide.fine;
+  planes[kCoarsePlane] = guide.coarse;
+}
+
+}  // namespace tapa
+
+#endif  // TAPA_SRC_MVS_SWEEP_HYPOTHESES_H_

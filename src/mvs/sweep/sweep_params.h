@@ -1,0 +1,41 @@
+#ifndef TAPA_SRC_MVS_SWEEP_SWEEP_PARAMS_H_
+#define TAPA_SRC_MVS_SWEEP_SWEEP_PARAMS_H_
+
+#include <cstdint>
+
+#include "src/mvs/sweep/view_prior.h"
+#include "src/mvs/sweep/view_selection.h"
+
+namespace tapa {
+
+// Parameters of one sweep.
+struct SweepParams {
+  // Number of the sweep since the estimation began; keys the random numbers.
+  uint32_t index = 0;
+  uint64_t seed = 0;
+  // Relative size of the random changes, 1 in the first sweep.
+  float perturbation = 1;
+  // Weight of the selection probability of the sweep before, 0 to 1.
+  float prev_prob_weight = 0;
+  int num_samples = 15;
+  // Half size of the correlation window, in pixels.
+  float window_radius = 5;
+  ViewSelection selection;
+  ViewPrior prior;
+
+  // The geometric pass.
+  bool geometric = false;
+  float geom_weight = 0.3f;
+  float geom_max_cost = 3;
+
+  // The last sweep, with the filter on.
+  bool filter = false;
+  float filter_min_prob = 0;
+  float filter_cos_min_triangulation = 1;
+  float filter_geom_max_cost = 1;
+  int filter_min_num_consistent = 2;
+};
+
+}  // namespace tapa
+
+#endif  // TAPA_SRC_MVS_SWEEP_SWEEP_PARAMS_H_
