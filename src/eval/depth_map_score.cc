@@ -148,7 +148,8 @@ DepthMapScore DepthMapScorer::Add(const Map<float>& depth,
       if (!IsDepth(estimate)) continue;
       ++score.num_measurements_covered;
       for (size_t i = 0; i < tolerances_.size(); ++i) {
-        score.num_complete[i] += IsWithin(estimate, measurement, tolerances_[i]);
+        score.num_complete[i] +=
+            IsWithin(estimate, measurement, tolerances_[i]);
       }
     }
   }
@@ -173,7 +174,8 @@ DepthMapScore DepthMapScorer::Add(const Map<float>& depth,
       if (!IsDepth(measurement)) continue;
       ++score.num_estimates_measured;
       for (size_t i = 0; i < tolerances_.size(); ++i) {
-        score.num_accurate[i] += IsWithin(estimate, measurement, tolerances_[i]);
+        score.num_accurate[i] +=
+            IsWithin(estimate, measurement, tolerances_[i]);
       }
       const double error =
           std::abs(static_cast<double>(estimate) - measurement);

@@ -16,8 +16,8 @@ namespace tapa {
 // An estimate is a pixel of the depth map with a positive, finite depth; a
 // measurement is such a pixel of the ground truth. The two may differ in size:
 // a pixel corresponds to that one of the other map in which its centre lies.
-// An estimate d is within a tolerance of a measurement g if |d - g| <= tolerance,
-// where a relative tolerance is taken of g.
+// An estimate d is within a tolerance of a measurement g if |d - g| <=
+// tolerance, where a relative tolerance is taken of g.
 //
 // Shares are 0 to 1, and not a number where there is nothing to share.
 struct DepthMapScore {
@@ -50,7 +50,8 @@ struct DepthMapScore {
   double MeasurementCoverage() const;
   // Share of the measurements that are complete, at tolerance i.
   double Completeness(int i) const;
-  // Share of the estimates with a measurement that are accurate, at tolerance i.
+  // Share of the estimates with a measurement that are accurate, at tolerance
+  // i.
   double Accuracy(int i) const;
   // Harmonic mean of the two, 0 if completeness is 0.
   double F1(int i) const;

@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
@@ -193,20 +192,6 @@ void WriteView(const WorkspaceView& view, const Map<float>& depth,
            DrawView(picture));
 }
 
-void WriteJson(const ScoreReport& report, const Arguments& arguments) {
-  nlohmann::json json = ScoresToJson(report);
-  json["workspace_path"] = arguments.workspace_path;
-  json["ground_truth_path"] = arguments.ground_truth_path;
-  json["input_type"] = arguments.input_type;
-  std::ofstream stream(arguments.json_path);
-  stream << json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace)
-         << "\n";
-  stream.close();
-  if (!stream) {
-    throw std::runtime_error("cannot write " + arguments.json_path);
-  }
-}
-
 void PrintRemarks(const ScoreReport& report, int num_maps,
                   int num_ground_truth) {
   const auto number = [](int64_t count, const std::string& what) {
@@ -269,7 +254,13 @@ void Run(const Arguments& arguments) {
   scorer.Finish(&report);
   PrintScores(report, std::cout);
   PrintRemarks(report, static_cast<int>(views.size()), num_ground_truth);
-  if (!arguments.json_path.empty()) WriteJson(report, arguments);
+  if (!arguments.json_path.empty()) {
+    nlohmann::json json = ScoresToJson(report);
+    json["workspace_path"] = arguments.workspace_path;
+    json["ground_truth_path"] = arguments.ground_truth_path;
+    json["input_type"] = arguments.input_type;
+    WriteJson(arguments.json_path, json);
+  }
 }
 
 void ParseAndRun(int argc, char** argv) {

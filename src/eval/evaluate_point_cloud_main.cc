@@ -12,13 +12,13 @@
 #include <string>
 #include <vector>
 
-#include "src/base/atomic_file.h"
 #include "src/base/parallel.h"
 #include "src/eval/cloud_checks.h"
 #include "src/eval/command_line.h"
 #include "src/eval/meshlab_project.h"
 #include "src/eval/point_cloud.h"
 #include "src/eval/point_cloud_score.h"
+#include "src/eval/score_table.h"
 #include "src/eval/tolerance.h"
 
 namespace tapa {
@@ -236,17 +236,6 @@ void PrintLine(const std::string& name, const std::vector<double>& values) {
   std::cout << std::endl;
 }
 
-void WriteJson(const std::string& path, const Scores& scores) {
-  const nlohmann::json json = {{"tolerances", scores.tolerances},
-                               {"completeness", scores.completeness},
-                               {"accuracy", scores.accuracy},
-                               {"f1", scores.f1}};
-  const std::string text = json.dump(2) + "\n";
-  AtomicFile file(path);
-  file.Write(text.data(), text.size());
-  file.Commit();
-}
-
 void Run(const Arguments& arguments) {
   const std::vector<ScanFile> files =
       ReadMeshLabProject(arguments.project_path);
@@ -267,7 +256,12 @@ void Run(const Arguments& arguments) {
   PrintLine("Completenesses", scores.completeness);
   PrintLine("Accuracies", scores.accuracy);
   PrintLine("F1-scores", scores.f1);
-  if (!arguments.json_path.empty()) WriteJson(arguments.json_path, scores);
+  if (!arguments.json_path.empty()) {
+    WriteJson(arguments.json_path, {{"tolerances", scores.tolerances},
+                                    {"completeness", scores.completeness},
+                                    {"accuracy", scores.accuracy},
+                                    {"f1", scores.f1}});
+  }
 }
 
 void ParseAndRun(int argc, char** argv) {

@@ -6,6 +6,8 @@
 #include <iomanip>
 #include <sstream>
 
+#include "src/base/atomic_file.h"
+
 namespace tapa {
 namespace {
 
@@ -144,6 +146,15 @@ nlohmann::json ScoresToJson(const ScoreReport& report) {
          {"score", OverallToJson(entry.score, report.tolerances)}});
   }
   return json;
+}
+
+void WriteJson(const std::string& path, const nlohmann::json& json) {
+  // Paths may be no text.
+  const std::string text =
+      json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  AtomicFile file(path);
+  file.Write(text.data(), text.size());
+  file.Commit();
 }
 
 std::string PercentText(double share, int digits) {

@@ -39,6 +39,10 @@ void PrintScores(const ScoreReport& report, std::ostream& stream);
 // nothing to measure.
 nlohmann::json ScoresToJson(const ScoreReport& report);
 
+// Writes a file that appears under its name when it is complete, as AtomicFile.
+// Throws Failure if it cannot be written.
+void WriteJson(const std::string& path, const nlohmann::json& json);
+
 // A share of 0 to 1 in per cent with `digits` decimals, "-" if there is none.
 std::string PercentText(double share, int digits);
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -18,24 +17,21 @@ namespace {
 
 // A scan of two points 4 m away in cubes of their own, one of which is
 // reconstructed exactly, with another point in the empty space before it.
-class EvaluatePointCloudTest : public ::testing::Test {
+class EvaluatePointCloudTest : public ProgramTest {
  protected:
+  EvaluatePointCloudTest() : ProgramTest(EVALUATE_POINT_CLOUD) {}
+
   void SetUp() override {
     WritePoints(folder_.File("r.ply"), {{4, 0, 0.25f}, {3, 0, 0.1875f}});
     WritePoints(folder_.File("gt/s.ply"), {{4, 0, 0.25f}, {4, 2, 0.25f}});
     WriteProject(folder_.File("gt/p.mlp"), {{"s.ply"}});
   }
 
-  Result Run(const std::string& arguments) {
-    return RunProgram(EVALUATE_POINT_CLOUD, arguments, folder_);
-  }
-
+  // As for any program, and no score is given.
   void ExpectError(const std::string& arguments, const std::string& part,
                    int exit_code = 1) {
-    SCOPED_TRACE(arguments);
-    const Result result = Run(arguments);
-    ExpectErrorLine(result, exit_code, part);
-    EXPECT_EQ(result.out.find("F1"), std::string::npos);
+    ProgramTest::ExpectError(arguments, part, exit_code);
+    EXPECT_EQ(ReadText(folder_.File("out.txt")).find("F1"), std::string::npos);
   }
 
   // The scores are given, with a single line of warning.
@@ -72,7 +68,6 @@ class EvaluatePointCloudTest : public ::testing::Test {
   const std::string kInputs =
       "--reconstruction_ply_path r.ply --ground_truth_mlp_path gt/p.mlp ";
   const std::string kAll = kInputs + "--tolerances 0.125,1.5 ";
-  TemporaryFolder folder_;
 };
 
 const char kGreen[] = "\x00\xff\x00";
@@ -105,7 +100,7 @@ TEST_F(EvaluatePointCloudTest, TolerancesAreSorted) {
 TEST_F(EvaluatePointCloudTest, Json) {
   const Result result = Run(kInputs + "--tolerances 0.1,0.2,1.5 --json s.json");
   EXPECT_EQ(result.exit_code, 0) << result.err;
-  const auto json = nlohmann::json::parse(ReadText(folder_.File("s.json")));
+  const auto json = ReadJson("s.json");
   EXPECT_EQ(json.size(), 4u);
   EXPECT_EQ(json["tolerances"], (std::vector<double>{0.1, 0.2, 1.5}));
   EXPECT_EQ(json["completeness"], (std::vector<double>{0.5, 0.5, 0.5}));
