@@ -46,6 +46,10 @@ bool IsGpuIndexList(const std::string& text) {
 void CheckOptions(const PatchMatchOptions& options) {
   try {
     EngineOptions(options).Check();
+    CheckOption(
+        "num_geom_iterations", options.num_geom_iterations,
+        options.num_geom_iterations == -1 || options.num_geom_iterations > 0,
+        "-1 (as num_iterations) or positive");
     CheckOption("seed", options.seed, options.seed >= 0, "at least 0");
     CheckOption("max_image_size", options.max_image_size,
                 options.max_image_size == -1 || options.max_image_size > 0,
@@ -123,10 +127,25 @@ Options EngineOptions(const PatchMatchOptions& options) {
   return result;
 }
 
-PatchMatchOptions FirstPassOptions(PatchMatchOptions options) {
-  options.geom_consistency = false;
-  options.filter = false;
-  options.tapa_refinement = false;
+Pass FinalPass(const PatchMatchOptions& options) {
+  return options.geom_consistency ? Pass::kGeometric : Pass::kPhotometric;
+}
+
+PatchMatchOptions PassOptions(PatchMatchOptions options, Pass pass) {
+  if (options.colmap_defaults) {
+    options.num_samples = 15;
+    options.num_iterations = 5;
+    options.num_geom_iterations = -1;
+    options.colmap_defaults = false;
+  }
+  if (pass == Pass::kGeometric && options.num_geom_iterations != -1) {
+    options.num_iterations = options.num_geom_iterations;
+  }
+  if (pass != FinalPass(options)) {
+    options.geom_consistency = false;
+    options.filter = false;
+    options.tapa_refinement = false;
+  }
   return options;
 }
 

@@ -9,17 +9,24 @@
 
 namespace tapa {
 
+// The two passes of stereo: the geometric one starts from the result of the
+// photometric one.
+enum class Pass { kPhotometric, kGeometric };
+
+// The pass whose maps are the result.
+Pass FinalPass(const colmap::mvs::PatchMatchOptions& options);
+
 // Throws Failure that names the option, if one is out of range.
 void CheckOptions(const colmap::mvs::PatchMatchOptions& options);
 
 // The options, but the seed, as the engine takes them.
 Options EngineOptions(const colmap::mvs::PatchMatchOptions& options);
 
-// The options of the photometric pass before a geometric one: all pixels keep
-// their estimates, so it neither filters nor, which takes the filter's place,
-// refines.
-colmap::mvs::PatchMatchOptions FirstPassOptions(
-    colmap::mvs::PatchMatchOptions options);
+// What is in force in a pass: it has its own number of iterations, and in the
+// photometric pass before a geometric one all pixels keep their estimates, so
+// it neither filters nor, which takes the filter's place, refines.
+colmap::mvs::PatchMatchOptions PassOptions(
+    colmap::mvs::PatchMatchOptions options, Pass pass);
 
 // Key of the random draws for a view in a pass. It does not depend on other
 // views, nor on their order, so that a resumed run gives the same maps.

@@ -23,6 +23,14 @@ struct HostOptions {
   // processors with the same SIMD instructions.
   int seed = 0;
 
+  // Iterations of the geometric pass, which starts from the result of the
+  // photometric one; -1: num_iterations, as that has.
+  int num_geom_iterations = -1;
+  // Whether to take COLMAP's own numbers of iterations and of samples, which
+  // cost two and a half times as much (docs/results.md), in place of those
+  // given.
+  bool colmap_defaults = false;
+
   // Whether to complete surfaces without texture by TAPA-MVS (Romanoni and
   // Matteucci, ICCV 2019). The options below do nothing without it; they are
   // those of TapaOptions (src/mvs/options.h), with the same defaults.
@@ -100,6 +108,11 @@ struct HostOptions {
           S("Threads on the CPU, -1: one per core"));
     visit(S("seed"), &options->seed,
           S("Key of all random draws: the same seed gives the same maps"));
+    visit(S("num_geom_iterations"), &options->num_geom_iterations,
+          S("Iterations of the geometric pass, -1: num_iterations"));
+    visit(S("colmap_defaults"), &options->colmap_defaults,
+          S("Take COLMAP's own num_iterations (5 in both passes) and "
+            "num_samples (15), whatever is given here"));
     visit(S("tapa"), &options->tapa,
           S("Complete surfaces without texture (TAPA-MVS); the options tapa_* "
             "do nothing without it"));

@@ -49,12 +49,14 @@ bool StartsWith(const std::string& text, const std::string& start) {
 // here counts, so that a new one is not forgotten.
 bool IsUsed(const std::string& name, const PatchMatchOptions& options) {
   // They say where and how fast it is computed, and what else is written.
-  // geom_consistency makes the pass another one.
+  // geom_consistency makes the pass another one, and num_iterations is that of
+  // the pass.
   static const std::set<std::string> unused = {
       "gpu_index",           "use_gpu",
       "num_threads",         "cache_size",
       "allow_missing_files", "write_consistency_graph",
       "geom_consistency",    "tapa_debug",
+      "num_geom_iterations", "colmap_defaults",
   };
   if (unused.count(name) > 0) {
     return false;

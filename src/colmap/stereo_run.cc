@@ -67,18 +67,18 @@ bool StereoRun::Run(const std::function<bool()>& stopped) {
   double total = 0;
   for (const Pass pass : {Pass::kPhotometric, Pass::kGeometric}) {
     for (const ViewIndices& problem : problems_) {
-      if (pass <= FinalPass() && !IsDone(problem.reference, pass)) {
+      if (pass <= FinalPass(options_) && !IsDone(problem.reference, pass)) {
         total += Megapixels(views_[problem.reference]);
       }
     }
   }
   progress_ = std::make_unique<Progress>(total);
 
-  if (FinalPass() == Pass::kGeometric &&
+  if (FinalPass(options_) == Pass::kGeometric &&
       !ComputePass(Pass::kPhotometric, stopped)) {
     return false;
   }
-  if (!ComputePass(FinalPass(), stopped)) {
+  if (!ComputePass(FinalPass(options_), stopped)) {
     return false;
   }
   progress_->PrintSummary();
@@ -135,7 +135,7 @@ bool StereoRun::DropMissingOnce() {
     }
     const std::string map_path =
         MapPath("depth_maps", view, Pass::kPhotometric);
-    if (FinalPass() == Pass::kGeometric && computed.count(view) == 0 &&
+    if (FinalPass(options_) == Pass::kGeometric && computed.count(view) == 0 &&
         !ExistsPath(map_path)) {
       return "the map " + map_path +
              " is missing and the view is not in the list of views to compute";
@@ -200,7 +200,7 @@ void StereoRun::CheckDepthRanges() const {
 // Looks at which options made the maps that are there already.
 void StereoRun::CheckRecords() const {
   for (const Pass pass : {Pass::kPhotometric, Pass::kGeometric}) {
-    if (pass > FinalPass() || !HasMaps(pass)) {
+    if (pass > FinalPass(options_) || !HasMaps(pass)) {
       continue;
     }
     const bool geometric = pass == Pass::kGeometric;
@@ -225,15 +225,16 @@ void StereoRun::CheckRecords() const {
       const auto found = recorded->find(name);
       return found != recorded->end() && found->second == "1";
     };
-    const bool was_final =
-        pass != FinalPass() && (was_on("filter") || was_on("tapa_refinement"));
+    const bool was_final = pass != FinalPass(options_) &&
+                           (was_on("filter") || was_on("tapa_refinement"));
     throw Failure(
         maps + "other options (PatchMatchStereo: " + differences +
         (was_final ? "; before a geometric pass nothing is filtered" : "") +
         "); take the same options, name another workspace, or remove all " +
-        (geometric             ? "*.geometric.bin"
-         : pass == FinalPass() ? "*.photometric.bin"
-                               : "*.photometric.bin and *.geometric.bin") +
+        (geometric ? "*.geometric.bin"
+         : pass == FinalPass(options_)
+             ? "*.photometric.bin"
+             : "*.photometric.bin and *.geometric.bin") +
         " there to have them computed again");
   }
 }
@@ -242,8 +243,8 @@ void StereoRun::CheckRecords() const {
 void StereoRun::CheckMaps() const {
   for (const ViewIndices& problem : problems_) {
     IsDone(problem.reference, Pass::kPhotometric);
-    IsDone(problem.reference, FinalPass());
-    if (FinalPass() == Pass::kPhotometric) {
+    IsDone(problem.reference, FinalPass(options_));
+    if (FinalPass(options_) == Pass::kPhotometric) {
       continue;
     }
     for (const int source : problem.sources) {
@@ -266,7 +267,7 @@ bool StereoRun::ReadPhotos(const std::function<bool()>& stopped) {
   std::set<int> needed;
   for (const ViewIndices& problem : problems_) {
     if (!IsDone(problem.reference, Pass::kPhotometric) ||
-        !IsDone(problem.reference, FinalPass())) {
+        !IsDone(problem.reference, FinalPass(options_))) {
       needed.insert(problem.reference);
       needed.insert(problem.sources.begin(), problem.sources.end());
     }
@@ -284,7 +285,7 @@ void StereoRun::PrepareFolders() const {
   std::set<std::string> folders;
   for (const Pass pass : {Pass::kPhotometric, Pass::kGeometric}) {
     for (const ViewIndices& problem : problems_) {
-      if (pass > FinalPass() || IsDone(problem.reference, pass)) {
+      if (pass > FinalPass(options_) || IsDone(problem.reference, pass)) {
         continue;
       }
       for (const char* kind :
@@ -300,8 +301,8 @@ void StereoRun::PrepareFolders() const {
     PrepareFolder(folder, "maps");
   }
   for (const ViewIndices& problem : problems_) {
-    if (WritesPictures(FinalPass()) &&
-        !IsDone(problem.reference, FinalPass())) {
+    if (WritesPictures(FinalPass(options_)) &&
+        !IsDone(problem.reference, FinalPass(options_))) {
       PrepareFolder(TapaPictureFolder(options_.tapa_debug,
                                       views_[problem.reference].name),
                     "the pictures of tapa_debug");
@@ -311,33 +312,25 @@ void StereoRun::PrepareFolders() const {
 
 // Pictures show a computation, not its maps.
 void StereoRun::WarnOfMissingPictures() const {
-  if (!WritesPictures(FinalPass())) {
+  if (!WritesPictures(FinalPass(options_))) {
     return;
   }
   const auto num_done = std::count_if(
       problems_.begin(), problems_.end(), [this](const ViewIndices& problem) {
-        return IsDone(problem.reference, FinalPass());
+        return IsDone(problem.reference, FinalPass(options_));
       });
   if (num_done > 0) {
-    PrintWarning(std::to_string(num_done) + " of " +
-                 std::to_string(NumViews()) +
-                 " views have their maps already, so that this run draws no "
-                 "pictures of them; to get some, remove their " +
-                 (FinalPass() == Pass::kGeometric ? "*.geometric.bin"
-                                                  : "*.photometric.bin"));
+    PrintWarning(
+        std::to_string(num_done) + " of " + std::to_string(NumViews()) +
+        " views have their maps already, so that this run draws no "
+        "pictures of them; to get some, remove their " +
+        (FinalPass(options_) == Pass::kGeometric ? "*.geometric.bin"
+                                                 : "*.photometric.bin"));
   }
 }
 
-StereoRun::Pass StereoRun::FinalPass() const {
-  return options_.geom_consistency ? Pass::kGeometric : Pass::kPhotometric;
-}
-
-PatchMatchOptions StereoRun::PassOptions(Pass pass) const {
-  return pass == FinalPass() ? options_ : FirstPassOptions(options_);
-}
-
 OptionValues StereoRun::RecordedOptions(Pass pass) const {
-  PatchMatchOptions options = PassOptions(pass);
+  PatchMatchOptions options = PassOptions(options_, pass);
   // A limit that no photograph reaches is none.
   const bool is_limited =
       std::any_of(views_.begin(), views_.end(), [](const SceneView& view) {
@@ -357,11 +350,12 @@ std::string StereoRun::MapPath(const std::string& kind, int view,
 
 bool StereoRun::WritesGraph(Pass pass) const {
   // The pass before the final one does not filter.
-  return options_.write_consistency_graph && pass == FinalPass();
+  return options_.write_consistency_graph && pass == FinalPass(options_);
 }
 
 bool StereoRun::WritesPictures(Pass pass) const {
-  return options_.tapa && !options_.tapa_debug.empty() && pass == FinalPass();
+  return options_.tapa && !options_.tapa_debug.empty() &&
+         pass == FinalPass(options_);
 }
 
 bool StereoRun::HasMaps(Pass pass) const {
@@ -466,7 +460,7 @@ bool StereoRun::ComputeNumberedView(size_t number, Pass pass, int device,
     }
     progress_->EndView(progress_view);
   }
-  num_done_ += pass == FinalPass();
+  num_done_ += pass == FinalPass(options_);
   return true;
 }
 
@@ -572,7 +566,7 @@ bool StereoRun::ComputeViewOn(int device, const ViewIndices& problem, Pass pass,
                               const std::function<bool()>& stopped) {
   const bool geometric = pass == Pass::kGeometric;
   const SceneView& reference = views_[problem.reference];
-  Options options = EngineOptions(PassOptions(pass));
+  Options options = EngineOptions(PassOptions(options_, pass));
   options.seed = ViewSeed(options_.seed, reference.name, geometric);
   options.device = device;
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "mvs/patch_match.h"
+#include "src/colmap/engine_options.h"
 #include "src/colmap/options_record.h"
 #include "src/colmap/problem_config.h"
 #include "src/colmap/progress.h"
@@ -41,9 +42,6 @@ class StereoRun {
   int NumViews() const { return static_cast<int>(problems_.size()); }
 
  private:
-  // One of the two passes over all views.
-  enum class Pass { kPhotometric, kGeometric };
-
   // Returns false if stopped.
   bool Prepare(const std::function<bool()>& stopped);
   void DropMissing();
@@ -54,9 +52,6 @@ class StereoRun {
   bool ReadPhotos(const std::function<bool()>& stopped);
   void PrepareFolders() const;
 
-  Pass FinalPass() const;
-  // The options that a pass runs with.
-  colmap::mvs::PatchMatchOptions PassOptions(Pass pass) const;
   // The options that a pass's maps depend on.
   OptionValues RecordedOptions(Pass pass) const;
   std::string MapPath(const std::string& kind, int view, Pass pass) const;

@@ -101,12 +101,39 @@ TEST(EngineOptions, EveryTapaOptionIsPassedOn) {
 TEST(EngineOptions, FirstPassNeitherFiltersNorRefinesNorChecksGeometry) {
   PatchMatchOptions given;
   given.tapa = true;
-  const Options options = EngineOptions(FirstPassOptions(given));
+  const Options options = EngineOptions(PassOptions(given, Pass::kPhotometric));
   EXPECT_FALSE(options.geom_consistency);
   EXPECT_FALSE(options.filter);
   EXPECT_TRUE(options.tapa.enabled);
   EXPECT_TRUE(options.tapa.fine_superpixels);
   EXPECT_FALSE(options.tapa.refinement);
+}
+
+TEST(PassOptions, EachPassHasItsIterations) {
+  const auto iterations = [](const PatchMatchOptions& options, Pass pass) {
+    return EngineOptions(PassOptions(options, pass)).num_iterations;
+  };
+  PatchMatchOptions options;
+  options.num_iterations = 7;
+  options.num_geom_iterations = 4;
+  EXPECT_EQ(iterations(options, Pass::kPhotometric), 7);
+  EXPECT_EQ(iterations(options, Pass::kGeometric), 4);
+  options.num_geom_iterations = -1;
+  EXPECT_EQ(iterations(options, Pass::kGeometric), 7);
+  options.num_geom_iterations = 0;
+  EXPECT_NE(ErrorOf(options).find("num_geom_iterations is 0"),
+            std::string::npos);
+}
+
+TEST(PassOptions, ColmapDefaultsTakeTheirPlace) {
+  PatchMatchOptions options;
+  options.colmap_defaults = true;
+  for (const Pass pass : {Pass::kPhotometric, Pass::kGeometric}) {
+    const Options result = EngineOptions(PassOptions(options, pass));
+    EXPECT_EQ(result.num_iterations, 5);
+    EXPECT_EQ(result.num_samples, 15);
+    EXPECT_EQ(result.window_step, 1);
+  }
 }
 
 TEST(CheckOptions, NamesTheOption) {

@@ -117,12 +117,13 @@ TEST(DescribeDifferences, APassBeforeTheGeometricOneIsNotAFinalOne) {
   PatchMatchOptions final_pass;
   final_pass.geom_consistency = false;
   PatchMatchOptions options;
-  EXPECT_EQ(DifferenceOf(final_pass, FirstPassOptions(options)),
+  EXPECT_EQ(DifferenceOf(final_pass, PassOptions(options, Pass::kPhotometric)),
             "filter was 1, is 0");
   final_pass.filter = false;
-  EXPECT_EQ(DifferenceOf(final_pass, FirstPassOptions(options)), "");
+  EXPECT_EQ(DifferenceOf(final_pass, PassOptions(options, Pass::kPhotometric)),
+            "");
   options.tapa = final_pass.tapa = true;
-  EXPECT_EQ(DifferenceOf(final_pass, FirstPassOptions(options)),
+  EXPECT_EQ(DifferenceOf(final_pass, PassOptions(options, Pass::kPhotometric)),
             "tapa_refinement was 1, is 0");
 }
 
