@@ -35,7 +35,7 @@ run() {
 reconstruct_example() {
   local out=$build/demo
   echo "It takes some minutes; $out/room/*/stereo.log tell how far it is." >&2
-  run "$here/benchmark" "$root/examples/room" --out "$out" --num_views 3
+  run "$here/evaluate" "$root/examples/room" --out "$out" --num_views 3
   echo
   sed -n '/^## room/,/^!/ { /^!/d; p }' "$out/report.md" # Without its pictures.
   echo "Report:   $out/report.md"

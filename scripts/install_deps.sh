@@ -8,7 +8,7 @@ packages=(
   # Tools.
   g++ cmake ninja-build ccache git python3 python3-venv ca-certificates
   # Scores and reports.
-  curl p7zip-full python3-matplotlib python3-numpy python3-opencv
+  curl p7zip-full python3-matplotlib python3-numpy python3-opencv python3-pydantic
   # COLMAP.
   libboost-filesystem-dev libboost-graph-dev libboost-program-options-dev
   libboost-system-dev libboost-test-dev libceres-dev libcgal-dev libeigen3-dev

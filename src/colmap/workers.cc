@@ -41,7 +41,7 @@ std::string Describe(int index, const DeviceList& list) {
   return std::to_string(index) + " (" + list.devices[index].name + ")";
 }
 
-// scripts/evaluation/machine.py reads the names from this line.
+// evaluation/machine.py reads the names from this line.
 std::string ComputingOn(const std::vector<int>& indices,
                         const DeviceList& list) {
   std::string names;

@@ -1,9 +1,9 @@
 #include "src/eval/depth_map_io.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <opencv2/core.hpp>
@@ -11,6 +11,10 @@
 #include <vector>
 
 #include "src/pictures/image_io.h"
+
+// Values are copied as they stand in the file.
+static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__,
+              "maps are stored in little-endian order");
 
 namespace tapa {
 namespace {
@@ -23,40 +27,19 @@ struct RawMap {
   std::vector<float> values;
 };
 
-// Reads a positive number and the '&' behind it.
-int ReadHeaderNumber(std::istream& stream, const std::string& path) {
-  constexpr int kMax = 1000000;
-  int value = 0;
-  int digit = stream.get();
-  while (digit >= '0' && digit <= '9' && value <= kMax) {
-    value = 10 * value + (digit - '0');
-    digit = stream.get();
-  }
-  if (digit != '&' || value < 1 || value > kMax) {
-    throw std::runtime_error(path + " is not a COLMAP depth or normal map");
-  }
-  return value;
-}
-
-float FromLittleEndian(const unsigned char* bytes) {
-  const uint32_t bits = static_cast<uint32_t>(bytes[0]) |
-                        static_cast<uint32_t>(bytes[1]) << 8 |
-                        static_cast<uint32_t>(bytes[2]) << 16 |
-                        static_cast<uint32_t>(bytes[3]) << 24;
-  float value;
-  std::memcpy(&value, &bits, sizeof(value));
-  return value;
-}
-
 RawMap ReadRawMap(const std::string& path, int channels) {
   std::ifstream stream(path, std::ios::binary);
   if (!stream || std::filesystem::is_directory(path)) {
     throw std::runtime_error("cannot open " + path);
   }
   RawMap map;
-  map.width = ReadHeaderNumber(stream, path);
-  map.height = ReadHeaderNumber(stream, path);
-  map.channels = ReadHeaderNumber(stream, path);
+  for (int* number : {&map.width, &map.height, &map.channels}) {
+    constexpr int kMax = 1000000;
+    if (!std::isdigit(stream.peek()) || !(stream >> *number) || *number < 1 ||
+        *number > kMax || stream.get() != '&') {
+      throw std::runtime_error(path + " is not a COLMAP depth or normal map");
+    }
+  }
   const std::string size = std::to_string(map.width) + "x" +
                            std::to_string(map.height) + "x" +
                            std::to_string(map.channels);
@@ -67,9 +50,8 @@ RawMap ReadRawMap(const std::string& path, int channels) {
   }
 
   // The length is compared first, lest a wrong header ask for all memory.
-  const std::streamoff begin = stream.tellg();
-  stream.seekg(0, std::ios::end);
-  const uint64_t found = static_cast<uint64_t>(stream.tellg() - begin);
+  const uint64_t found =
+      std::filesystem::file_size(path) - static_cast<uint64_t>(stream.tellg());
   const uint64_t expected =
       sizeof(float) * static_cast<uint64_t>(map.width) * map.height * channels;
   if (found != expected) {
@@ -78,15 +60,10 @@ RawMap ReadRawMap(const std::string& path, int channels) {
         std::to_string(found) + " bytes of values where size " + size +
         " needs " + std::to_string(expected));
   }
-  stream.seekg(begin);
-  std::vector<unsigned char> bytes(expected);
-  stream.read(reinterpret_cast<char*>(bytes.data()),
+  map.values.resize(expected / sizeof(float));
+  stream.read(reinterpret_cast<char*>(map.values.data()),
               static_cast<std::streamsize>(expected));
   if (!stream) throw std::runtime_error("cannot read " + path);
-  map.values.resize(expected / sizeof(float));
-  for (size_t i = 0; i < map.values.size(); ++i) {
-    map.values[i] = FromLittleEndian(&bytes[sizeof(float) * i]);
-  }
   return map;
 }
 

@@ -37,13 +37,13 @@ void AddCounts(const DepthMapScore& score, DepthMapScore* sum) {
   sum->num_measurements += score.num_measurements;
   sum->num_measurements_covered += score.num_measurements_covered;
   sum->num_estimates_measured += score.num_estimates_measured;
-  for (size_t i = 0; i < score.num_met.size(); ++i) {
-    sum->num_met[i] += score.num_met[i];
-    sum->num_right[i] += score.num_right[i];
+  for (size_t i = 0; i < score.num_complete.size(); ++i) {
+    sum->num_complete[i] += score.num_complete[i];
+    sum->num_accurate[i] += score.num_accurate[i];
   }
 }
 
-bool Meets(float estimate, float measurement, const Tolerance& tolerance) {
+bool IsWithin(float estimate, float measurement, const Tolerance& tolerance) {
   const double truth = measurement;
   const double limit = tolerance.unit == Tolerance::Unit::kPercent
                            ? truth * tolerance.value / 100
@@ -100,11 +100,11 @@ double DepthMapScore::MeasurementCoverage() const {
 }
 
 double DepthMapScore::Completeness(int i) const {
-  return Share(num_met.at(i), num_measurements);
+  return Share(num_complete.at(i), num_measurements);
 }
 
 double DepthMapScore::Accuracy(int i) const {
-  return Share(num_right.at(i), num_estimates_measured);
+  return Share(num_accurate.at(i), num_estimates_measured);
 }
 
 double DepthMapScore::F1(int i) const {
@@ -116,8 +116,8 @@ double DepthMapScore::F1(int i) const {
 
 DepthMapScorer::DepthMapScorer(std::vector<Tolerance> tolerances)
     : tolerances_(std::move(tolerances)) {
-  overall_.num_met.resize(tolerances_.size());
-  overall_.num_right.resize(tolerances_.size());
+  overall_.num_complete.resize(tolerances_.size());
+  overall_.num_accurate.resize(tolerances_.size());
 }
 
 DepthMapScore DepthMapScorer::Add(const Map<float>& depth,
@@ -131,8 +131,8 @@ DepthMapScore DepthMapScorer::Add(const Map<float>& depth,
   std::vector<float> relative_errors;
   DepthMapScore score;
   score.num_maps = 1;
-  score.num_met.resize(tolerances_.size());
-  score.num_right.resize(tolerances_.size());
+  score.num_complete.resize(tolerances_.size());
+  score.num_accurate.resize(tolerances_.size());
 
   // Completeness: over the measurements.
   const std::vector<int> depth_rows =
@@ -148,7 +148,7 @@ DepthMapScore DepthMapScorer::Add(const Map<float>& depth,
       if (!IsDepth(estimate)) continue;
       ++score.num_measurements_covered;
       for (size_t i = 0; i < tolerances_.size(); ++i) {
-        score.num_met[i] += Meets(estimate, measurement, tolerances_[i]);
+        score.num_complete[i] += IsWithin(estimate, measurement, tolerances_[i]);
       }
     }
   }
@@ -173,7 +173,7 @@ DepthMapScore DepthMapScorer::Add(const Map<float>& depth,
       if (!IsDepth(measurement)) continue;
       ++score.num_estimates_measured;
       for (size_t i = 0; i < tolerances_.size(); ++i) {
-        score.num_right[i] += Meets(estimate, measurement, tolerances_[i]);
+        score.num_accurate[i] += IsWithin(estimate, measurement, tolerances_[i]);
       }
       const double error =
           std::abs(static_cast<double>(estimate) - measurement);

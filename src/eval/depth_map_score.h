@@ -16,8 +16,8 @@ namespace tapa {
 // An estimate is a pixel of the depth map with a positive, finite depth; a
 // measurement is such a pixel of the ground truth. The two may differ in size:
 // a pixel corresponds to that one of the other map in which its centre lies.
-// An estimate d meets a measurement g if |d - g| <= tolerance, where a relative
-// tolerance is taken of g.
+// An estimate d is within a tolerance of a measurement g if |d - g| <= tolerance,
+// where a relative tolerance is taken of g.
 //
 // Shares are 0 to 1, and not a number where there is nothing to share.
 struct DepthMapScore {
@@ -34,10 +34,10 @@ struct DepthMapScore {
   int64_t num_measurements_covered = 0;
   // Estimates whose corresponding pixel has a measurement.
   int64_t num_estimates_measured = 0;
-  // For each tolerance: measurements that their estimate meets ...
-  std::vector<int64_t> num_met;
-  // ... and estimates that meet their measurement.
-  std::vector<int64_t> num_right;
+  // For each tolerance: measurements within it of their estimate ...
+  std::vector<int64_t> num_complete;
+  // ... and estimates within it of their measurement.
+  std::vector<int64_t> num_accurate;
   // Median error of the estimates with a measurement: |d - g| in metres and
   // |d - g| / g. Of an even number, the mean of the middle two. Exact for one
   // map, to within 0.05 % for several.
@@ -48,9 +48,9 @@ struct DepthMapScore {
   double Coverage() const;
   // Share of the measurements that have an estimate.
   double MeasurementCoverage() const;
-  // Share of the measurements that are met, at tolerance i.
+  // Share of the measurements that are complete, at tolerance i.
   double Completeness(int i) const;
-  // Share of the estimates with a measurement that are right, at tolerance i.
+  // Share of the estimates with a measurement that are accurate, at tolerance i.
   double Accuracy(int i) const;
   // Harmonic mean of the two, 0 if completeness is 0.
   double F1(int i) const;

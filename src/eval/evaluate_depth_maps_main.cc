@@ -1,17 +1,13 @@
 // Compares the depth maps of a COLMAP workspace with measured depth, and draws
 // pictures of them.
 
-#include <boost/program_options.hpp>
 #include <cmath>
-#include <cstdlib>
-#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
 #include <opencv2/core/utils/logger.hpp>
-#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -30,7 +26,6 @@ namespace tapa {
 namespace {
 
 namespace fs = std::filesystem;
-namespace po = boost::program_options;
 
 struct Arguments {
   std::string workspace_path;
@@ -39,50 +34,40 @@ struct Arguments {
   std::string tolerances = "0.01,0.02,0.05,0.1,0.2";
   std::string relative_tolerances = "0.5,1,2";
   double depth_scale = 4000;
+  std::string bounds;
+  // From the list of bounds.
   std::vector<double> max_textureness;
   std::string json_path;
   std::string pictures_path;
 };
 
-po::options_description Describe(Arguments* arguments) {
-  po::options_description options(
-      "Compares the depth maps of a COLMAP workspace with measured depth.\n\n"
-      "Options");
-  options.add_options()("help", "Print this text.");
-  options.add_options()("workspace_path", po::value(&arguments->workspace_path),
-                        "Dense workspace of COLMAP.");
-  options.add_options()(
-      "ground_truth_path", po::value(&arguments->ground_truth_path),
-      "Folder with one depth map per photograph, named like it: a 16-bit PNG, "
-      "0 where nothing was measured, or a COLMAP map (.bin). May be missing "
-      "if only pictures are wanted.");
-  options.add_options()(
-      "input_type",
-      po::value(&arguments->input_type)->default_value(arguments->input_type),
-      "Which maps: geometric or photometric.");
-  options.add_options()(
-      "tolerances",
-      po::value(&arguments->tolerances)->default_value(arguments->tolerances),
-      "Absolute errors that are tolerated, in metres.");
-  options.add_options()(
-      "relative_tolerances",
-      po::value(&arguments->relative_tolerances)
-          ->default_value(arguments->relative_tolerances),
-      "Relative errors that are tolerated, in per cent of the true depth.");
-  options.add_options()(
-      "depth_scale",
-      po::value(&arguments->depth_scale)->default_value(arguments->depth_scale),
-      "Value of one metre in a ground-truth PNG.");
-  options.add_options()(
-      "max_textureness", po::value<std::string>(),
-      "Also score the pixels whose textureness is below each of these bounds, "
-      "which are separated by commas. Textureness is 0.5 where a photograph is "
-      "flat and tends to 1 where it has much texture.");
-  options.add_options()("json", po::value(&arguments->json_path),
-                        "File for all scores, of each view and overall.");
-  options.add_options()("pictures", po::value(&arguments->pictures_path),
-                        "Folder for one PNG per view.");
-  return options;
+CommandLine Describe(Arguments* arguments) {
+  CommandLine line(
+      "Compares the depth maps of a COLMAP workspace with measured depth.");
+  line.Add("workspace_path", &arguments->workspace_path,
+           "Dense workspace of COLMAP.");
+  line.Add("ground_truth_path", &arguments->ground_truth_path,
+           "Folder with one depth map per photograph, named like it: a 16-bit "
+           "PNG, 0 where nothing was measured, or a COLMAP map (.bin). May be "
+           "missing if only pictures are wanted.");
+  line.AddWithDefault("input_type", &arguments->input_type,
+                      "Which maps: geometric or photometric.");
+  line.AddWithDefault("tolerances", &arguments->tolerances,
+                      "Absolute errors that are tolerated, in metres.");
+  line.AddWithDefault("relative_tolerances", &arguments->relative_tolerances,
+                      "Relative errors that are tolerated, in per cent of the "
+                      "true depth.");
+  line.AddWithDefault("depth_scale", &arguments->depth_scale,
+                      "Value of one metre in a ground-truth PNG.");
+  line.Add("max_textureness", &arguments->bounds,
+           "Also score the pixels whose textureness is below each of these "
+           "bounds, which are separated by commas. Textureness is 0.5 where a "
+           "photograph is flat and tends to 1 where it has much texture.");
+  line.Add("json", &arguments->json_path,
+           "File for all scores, of each view and overall.");
+  line.Add("pictures", &arguments->pictures_path,
+           "Folder for one PNG per view.");
+  return line;
 }
 
 void CheckArguments(const Arguments& arguments) {
@@ -124,24 +109,6 @@ void CheckArguments(const Arguments& arguments) {
                                   source.string());
     }
   }
-}
-
-// Returns nothing if only the help was asked for.
-std::optional<Arguments> ParseArguments(int argc, char** argv) {
-  Arguments arguments;
-  const po::options_description options = Describe(&arguments);
-  const auto parsed = ParseCommandLine(argc, argv, options);
-  if (!parsed.has_value()) return std::nullopt;
-  const po::variables_map& variables = *parsed;
-  if (variables.count("max_textureness") > 0) {
-    for (const Tolerance& bound :
-         ParseTolerances(variables["max_textureness"].as<std::string>(),
-                         Tolerance::Unit::kMetres)) {
-      arguments.max_textureness.push_back(bound.value);
-    }
-  }
-  CheckArguments(arguments);
-  return arguments;
 }
 
 std::vector<Tolerance> AllTolerances(const Arguments& arguments) {
@@ -305,18 +272,25 @@ void Run(const Arguments& arguments) {
   if (!arguments.json_path.empty()) WriteJson(report, arguments);
 }
 
+void ParseAndRun(int argc, char** argv) {
+  // What OpenCV has to say about bad files is said here, in one line.
+  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+  Arguments arguments;
+  CommandLine line = Describe(&arguments);
+  if (!line.Parse(argc, argv)) return;
+  if (line.IsGiven("max_textureness")) {
+    for (const Tolerance& bound :
+         ParseTolerances(arguments.bounds, Tolerance::Unit::kMetres)) {
+      arguments.max_textureness.push_back(bound.value);
+    }
+  }
+  CheckArguments(arguments);
+  Run(arguments);
+}
+
 }  // namespace
 }  // namespace tapa
 
 int main(int argc, char** argv) {
-  try {
-    // What OpenCV has to say about bad files is said below, in one line.
-    cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
-    const auto arguments = tapa::ParseArguments(argc, argv);
-    if (arguments.has_value()) tapa::Run(*arguments);
-  } catch (const std::exception& error) {
-    std::cerr << "ERROR: " << error.what() << std::endl;
-    return EXIT_FAILURE;
-  }
-  return EXIT_SUCCESS;
+  return tapa::RunMain([&] { tapa::ParseAndRun(argc, argv); });
 }

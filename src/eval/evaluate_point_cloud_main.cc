@@ -2,15 +2,11 @@
 // exit codes of ETH3D's own evaluation program.
 
 #include <algorithm>
-#include <boost/program_options.hpp>
 #include <cmath>
 #include <cstdint>
-#include <exception>
 #include <filesystem>
 #include <iostream>
-#include <new>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -29,17 +25,9 @@ namespace tapa {
 namespace {
 
 namespace fs = std::filesystem;
-namespace po = boost::program_options;
 
-constexpr int kSuccess = 0;
-constexpr int kFailure = 1;
+// Where the reconstruction cannot be read.
 constexpr int kReconstructionFailure = 2;
-
-// The reconstruction cannot be read, which has an exit code of its own.
-class ReconstructionError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
 
 struct Arguments {
   std::string reconstruction_path;
@@ -55,42 +43,37 @@ struct Arguments {
   int num_threads = -1;
 };
 
-po::options_description Describe(Arguments* arguments) {
-  po::options_description options(
-      "Compares a point cloud with laser scans as ETH3D does.\n\n"
-      "Options");
-  const auto add = [&](const char* name, auto* value, const char* text) {
-    options.add_options()(name, po::value(value), text);
-  };
-  const auto add_number = [&](const char* name, auto* value, const char* text) {
-    options.add_options()(name, po::value(value)->default_value(*value), text);
-  };
-  options.add_options()("help", "Print this text.");
-  add("reconstruction_ply_path", &arguments->reconstruction_path,
-      "Point cloud to be scored, a PLY file.");
-  add("ground_truth_mlp_path", &arguments->project_path,
-      "MeshLab project with the scans and their poses.");
-  add("tolerances", &arguments->tolerance_list,
+CommandLine Describe(Arguments* arguments) {
+  CommandLine line("Compares a point cloud with laser scans as ETH3D does.");
+  line.Add("reconstruction_ply_path", &arguments->reconstruction_path,
+           "Point cloud to be scored, a PLY file.");
+  line.Add("ground_truth_mlp_path", &arguments->project_path,
+           "MeshLab project with the scans and their poses.");
+  line.Add(
+      "tolerances", &arguments->tolerance_list,
       "Distances that are tolerated, in metres: 0.01,0.02,0.05,0.1,0.2,0.5 in "
       "most publications.");
-  add_number("voxel_size", &arguments->voxel_size,
-             "Edge of the cubes that points are averaged over, in metres.");
-  add_number("beam_start_radius_meters", &arguments->beam.start_radius,
-             "Radius of a scanner's beam at the scanner.");
-  add_number("beam_divergence_halfangle_deg",
-             &arguments->beam.divergence_halfangle,
-             "Half the opening angle of the beam, in degrees.");
-  add("completeness_cloud_output_path", &arguments->completeness_cloud_path,
+  line.AddWithDefault(
+      "voxel_size", &arguments->voxel_size,
+      "Edge of the cubes that points are averaged over, in metres.");
+  line.AddWithDefault("beam_start_radius_meters", &arguments->beam.start_radius,
+                      "Radius of a scanner's beam at the scanner.");
+  line.AddWithDefault("beam_divergence_halfangle_deg",
+                      &arguments->beam.divergence_halfangle,
+                      "Half the opening angle of the beam, in degrees.");
+  line.Add(
+      "completeness_cloud_output_path", &arguments->completeness_cloud_path,
       "If given, the scans are written to <path>.tolerance_<tolerance>.ply: "
       "green where they are complete, else red.");
-  add("accuracy_cloud_output_path", &arguments->accuracy_cloud_path,
+  line.Add(
+      "accuracy_cloud_output_path", &arguments->accuracy_cloud_path,
       "If given, the reconstruction is written to "
       "<path>.tolerance_<tolerance>.ply: green where it is accurate, red where "
       "it is not, blue where it cannot be judged.");
-  add("json", &arguments->json_path, "File for the scores.");
-  add_number("num_threads", &arguments->num_threads,
-             "Number of threads; -1: one per core.");
-  return options;
+  line.Add("json", &arguments->json_path, "File for the scores.");
+  line.AddWithDefault("num_threads", &arguments->num_threads,
+                      "Number of threads; -1: one per core.");
+  return line;
 }
 
 std::vector<double> ParseSortedTolerances(const std::string& list) {
@@ -130,24 +113,6 @@ void CheckArguments(const Arguments& arguments) {
   }
 }
 
-// Returns nothing if only the help was asked for.
-std::optional<Arguments> ParseArguments(int argc, char** argv) {
-  Arguments arguments;
-  const po::options_description options = Describe(&arguments);
-  const auto parsed = ParseCommandLine(argc, argv, options);
-  if (!parsed.has_value()) return std::nullopt;
-  const po::variables_map& variables = *parsed;
-  for (const char* name :
-       {"reconstruction_ply_path", "ground_truth_mlp_path", "tolerances"}) {
-    if (variables.count(name) == 0) {
-      throw std::invalid_argument(std::string("--") + name + " is required");
-    }
-  }
-  arguments.tolerances = ParseSortedTolerances(arguments.tolerance_list);
-  CheckArguments(arguments);
-  return arguments;
-}
-
 void Warn(const std::string& text) {
   if (!text.empty()) std::cerr << "WARNING: " << text << "." << std::endl;
 }
@@ -173,7 +138,7 @@ std::vector<Vec3> ReadReconstruction(const Arguments& arguments) {
     }
     return points;
   } catch (const std::runtime_error& error) {
-    throw ReconstructionError(error.what());
+    throw ExitError(kReconstructionFailure, error.what());
   }
 }
 
@@ -305,25 +270,22 @@ void Run(const Arguments& arguments) {
   if (!arguments.json_path.empty()) WriteJson(arguments.json_path, scores);
 }
 
-int RunMain(int argc, char** argv) {
-  try {
-    const auto arguments = ParseArguments(argc, argv);
-    if (arguments.has_value()) Run(*arguments);
-    return kSuccess;
-  } catch (const ReconstructionError& error) {
-    std::cerr << "ERROR: " << error.what() << std::endl;
-    return kReconstructionFailure;
-  } catch (const std::bad_alloc&) {
-    std::cerr << "ERROR: there is not enough memory: score fewer points, or "
-                 "use a larger machine (docs/evaluation.md says how much)"
-              << std::endl;
-  } catch (const std::exception& error) {
-    std::cerr << "ERROR: " << error.what() << std::endl;
+void ParseAndRun(int argc, char** argv) {
+  Arguments arguments;
+  CommandLine line = Describe(&arguments);
+  if (!line.Parse(argc, argv)) return;
+  for (const char* name :
+       {"reconstruction_ply_path", "ground_truth_mlp_path", "tolerances"}) {
+    line.Require(name);
   }
-  return kFailure;
+  arguments.tolerances = ParseSortedTolerances(arguments.tolerance_list);
+  CheckArguments(arguments);
+  Run(arguments);
 }
 
 }  // namespace
 }  // namespace tapa
 
-int main(int argc, char** argv) { return tapa::RunMain(argc, argv); }
+int main(int argc, char** argv) {
+  return tapa::RunMain([&] { tapa::ParseAndRun(argc, argv); });
+}

@@ -160,20 +160,6 @@ size_t SizeOf(PlyType type) {
   return 8;
 }
 
-bool PlyElement::HasLists() const {
-  for (const PlyProperty& property : properties) {
-    if (property.list_size_type.has_value()) return true;
-  }
-  return false;
-}
-
-size_t PlyElement::Stride() const {
-  size_t stride = 0;
-  for (const PlyProperty& property : properties)
-    stride += SizeOf(property.type);
-  return stride;
-}
-
 PlyHeader ReadPlyHeader(const std::string& path, std::istream* stream) {
   return HeaderParser(path, stream).Parse();
 }

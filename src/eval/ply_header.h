@@ -39,10 +39,6 @@ struct PlyElement {
   std::string name;
   uint64_t count = 0;
   std::vector<PlyProperty> properties;
-
-  bool HasLists() const;
-  // Bytes of one in a binary file, for elements without lists.
-  size_t Stride() const;
 };
 
 struct PlyHeader {

@@ -47,7 +47,7 @@ Row ViewRow(const std::string& name, const DepthMapScore& score) {
              PercentText(score.MeasurementCoverage(), 1),
              Fixed(1000 * score.median_absolute_error, 2),
              PercentText(score.median_relative_error, 3)};
-  for (size_t i = 0; i < score.num_met.size(); ++i) {
+  for (size_t i = 0; i < score.num_complete.size(); ++i) {
     row.push_back(PercentText(score.F1(static_cast<int>(i)), 1));
   }
   return row;

@@ -241,13 +241,13 @@ class Prepare(Case):
     def setUpClass(cls):
         cls.made = tempfile.mkdtemp(prefix="tapa-")
         cls.addClassCleanup(shutil.rmtree, cls.made, True)
-        result = run_script("miniature_eth3d.py", cls.made, "--scene", "attic", "--image_size",
+        result = run_script("eth3d", "miniature", cls.made, "--scene", "attic", "--image_size",
                             "96", "--views", "4", "--voxel_size", "0.1")
         assert result.returncode == 0, result.stdout
 
     def setUp(self):
         self.folder = self.make_folder()
-        shutil.copytree(self.made, os.path.join(self.folder, "scenes"))
+        shutil.copytree(os.path.join(self.made, "scenes"), os.path.join(self.folder, "scenes"))
 
     def prepare(self, *arguments):
         return run_script("eth3d", "prepare", self.folder, *arguments)
@@ -324,7 +324,7 @@ class Prepare(Case):
         self.assertTrue(os.path.exists(paths[0]))
 
     def test_test_scene(self):
-        result = run_script("miniature_eth3d.py", os.path.join(self.folder, "scenes"), "--scene",
+        result = run_script("eth3d", "miniature", self.folder, "--scene",
                             "door", "--image_size", "96", "--views", "4", "--split", "test")
         self.assert_done(result)
         self.assert_done(self.prepare("--scenes", "door"))
@@ -412,7 +412,7 @@ class Pipeline(Case):
         cls.folder = tempfile.mkdtemp(prefix="tapa-")
         cls.addClassCleanup(shutil.rmtree, cls.folder, True)
         cls.commands = [
-            ("miniature_eth3d.py", os.path.join(cls.folder, "scenes"), "--scene", "office",
+            ("eth3d", "miniature", cls.folder, "--scene", "office",
              "--image_size", "144", "--views", "4", "--voxel_size", "0.02"),
             ("eth3d", "prepare", cls.folder),
             ("eth3d", "run", cls.folder, "--resolution", "both", *METHODS, *FAST)]
@@ -598,7 +598,7 @@ class Pipeline(Case):
             return list(csv.DictReader(file))
 
     def test_7_a_scene_that_fails_does_not_stop_the_others(self):
-        result = run_script("miniature_eth3d.py", self.path("scenes"), "--scene", "broken",
+        result = run_script("eth3d", "miniature", self.folder, "--scene", "broken",
                             "--image_size", "96", "--views", "3")
         self.assert_done(result)
         photograph = self.path("scenes/broken/images/dslr_images_undistorted/DSC_0101.JPG")
@@ -638,7 +638,7 @@ class Pipeline(Case):
         self.assertIn("stereo ...", process.stderr.readline())
         other = self.eth3d("run", "--methods", "plain")
         self.assert_failed(other, f"another eth3d-run is at work in {self.folder};")
-        self.assert_done(self.eth3d("run", "--methods", "plain", "--dry_run"))
+        self.assert_done(self.eth3d("run", "--methods", "plain", "--dry_run", fast=FAST))
         time.sleep(0.5)
         process.send_signal(signal.SIGINT)
         _, errors = process.communicate(timeout=120)

@@ -127,7 +127,7 @@ def run(source_dir, bin_dir, out, case):
     """Runs COLMAP's own algorithm and TAPA. Returns the exit status."""
     shutil.rmtree(out, ignore_errors=True)
     status = subprocess.run(
-        [os.path.join(source_dir, "scripts", "benchmark"),
+        [os.path.join(source_dir, "scripts", "evaluate"),
          os.path.join(source_dir, case["data"]), "--out", out, "--no_clouds",
          *case.get("arguments", [])],
         env=dict(os.environ, TAPA_BIN_DIR=bin_dir), check=False).returncode
@@ -163,7 +163,7 @@ def main():
     out = os.path.join(out_dir, name)
     status = run(source_dir, bin_dir, out, case)
     if status != 0:
-        return report(False, f"scripts/benchmark: exit status {status}")
+        return report(False, f"scripts/evaluate: exit status {status}")
     (plain, plain_time), (tapa, tapa_time) = (
         read_results(os.path.join(out, os.path.basename(case["data"]), method))
         for method in ("plain-0", "tapa-0"))

@@ -25,20 +25,6 @@ inline void WritePoints(const std::string& path,
   }
 }
 
-// That reading a file fails with its path and `part` in the message.
-template <typename Read>
-void ExpectReadError(const Read& read, const std::string& path,
-                     const std::string& part) {
-  try {
-    read(path);
-    ADD_FAILURE() << "no error: " << part;
-  } catch (const std::runtime_error& error) {
-    const std::string text = error.what();
-    EXPECT_NE(text.find(path), std::string::npos) << text;
-    EXPECT_NE(text.find(part), std::string::npos) << text;
-  }
-}
-
 constexpr char kIdentity[] = "1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1";
 
 struct ProjectScan {

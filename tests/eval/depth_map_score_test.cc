@@ -99,9 +99,9 @@ TEST(DepthMapScoreTest, SmallMapAgainstLargeTruth) {
   const DepthMapScore score = Score(depth, truth, {{0.5, kMetres}});
   EXPECT_EQ(score.num_measurements, 7);
   EXPECT_EQ(score.num_measurements_covered, 4);
-  EXPECT_EQ(score.num_met[0], 3);
+  EXPECT_EQ(score.num_complete[0], 3);
   EXPECT_EQ(score.num_estimates_measured, 1);
-  EXPECT_EQ(score.num_right[0], 0);
+  EXPECT_EQ(score.num_accurate[0], 0);
 }
 
 TEST(DepthMapScoreTest, LargeMapAgainstSmallTruth) {
@@ -113,9 +113,9 @@ TEST(DepthMapScoreTest, LargeMapAgainstSmallTruth) {
   EXPECT_EQ(score.num_pixels, 8);
   EXPECT_EQ(score.num_estimates, 7);
   EXPECT_EQ(score.num_estimates_measured, 4);
-  EXPECT_EQ(score.num_right[0], 3);
+  EXPECT_EQ(score.num_accurate[0], 3);
   EXPECT_EQ(score.num_measurements, 1);
-  EXPECT_EQ(score.num_met[0], 0);
+  EXPECT_EQ(score.num_complete[0], 0);
 }
 
 TEST(DepthMapScoreTest, MaskLeavesPixelsOut) {
@@ -255,8 +255,8 @@ TEST(DepthMapScoreTest, AgreesWithBruteForce) {
     EXPECT_EQ(score.num_estimates_measured, judged);
     EXPECT_NEAR(score.median_absolute_error, median, 1e-6);
     for (int i = 0; i < 2; ++i) {
-      EXPECT_EQ(score.num_met[i], met[i]);
-      EXPECT_EQ(score.num_right[i], right[i]);
+      EXPECT_EQ(score.num_complete[i], met[i]);
+      EXPECT_EQ(score.num_accurate[i], right[i]);
       EXPECT_NEAR(score.F1(i),
                   2.0 / (1.0 * measured / met[i] + 1.0 * judged / right[i]),
                   1e-12);

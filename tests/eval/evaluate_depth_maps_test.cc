@@ -52,8 +52,8 @@ TEST_F(EvaluateDepthMapsTest, TableAndJson) {
       kBoth + "--tolerances 0.1,0.25 --relative_tolerances=1 --json s.json");
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(result.err, "");
-  EXPECT_NE(result.out.find("a.jpg"), std::string::npos) << result.out;
-  EXPECT_NE(result.out.find("F1 25 cm"), std::string::npos) << result.out;
+  ExpectContains(result.out, "a.jpg");
+  ExpectContains(result.out, "F1 25 cm");
 
   const auto json = nlohmann::json::parse(ReadText(folder_.File("s.json")));
   EXPECT_EQ(json["input_type"], "geometric");
@@ -86,9 +86,7 @@ TEST_F(EvaluateDepthMapsTest, PhotometricMapsAndOtherScale) {
   EXPECT_EQ(json["overall"]["num_pixels"], 6);
   EXPECT_EQ(json["overall"]["num_measurements"], 24);
   EXPECT_EQ(json["overall"]["tolerances"][0]["f1"], 1);
-  EXPECT_NE(result.out.find("1 ground truth map without depth map"),
-            std::string::npos)
-      << result.out;
+  ExpectContains(result.out, "1 ground truth map without depth map");
 }
 
 TEST_F(EvaluateDepthMapsTest, InvalidDepthsAreReported) {
@@ -98,9 +96,7 @@ TEST_F(EvaluateDepthMapsTest, InvalidDepthsAreReported) {
   WriteColmapMap(folder_.File(kMaps + "a.jpg.geometric.bin"), 6, 4, 1, depth);
   const Result result = Run(kBoth + "--pictures p --json s.json");
   EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_NE(result.out.find("2 pixels with a negative or not finite depth"),
-            std::string::npos)
-      << result.out;
+  ExpectContains(result.out, "2 pixels with a negative or not finite depth");
   const auto json = nlohmann::json::parse(ReadText(folder_.File("s.json")));
   EXPECT_EQ(json["overall"]["num_invalid"], 2);
   EXPECT_EQ(json["images"][0]["num_estimates"], 22);
@@ -124,9 +120,7 @@ TEST_F(EvaluateDepthMapsTest, BoundsOfTextureness) {
                            "/w --ground_truth_path " + other.path() + "/gt ";
   const Result result = Run(both + "--max_textureness 0.75,1 --json s.json");
   EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_NE(result.out.find("Textureness below 0.75: coverage 100.0 % of 72"),
-            std::string::npos)
-      << result.out;
+  ExpectContains(result.out, "Textureness below 0.75: coverage 100.0 % of 72");
   const auto json = nlohmann::json::parse(ReadText(folder_.File("s.json")));
   EXPECT_EQ(json["overall"]["num_pixels"], 4 * 40);
   const auto& bounds = json["by_textureness"];
@@ -160,7 +154,7 @@ TEST_F(EvaluateDepthMapsTest, Pictures) {
 TEST_F(EvaluateDepthMapsTest, Help) {
   const Result result = Run("--help");
   EXPECT_EQ(result.exit_code, 0);
-  EXPECT_NE(result.out.find("--workspace_path"), std::string::npos);
+  ExpectContains(result.out, "--workspace_path");
 }
 
 TEST_F(EvaluateDepthMapsTest, BadArguments) {

@@ -43,9 +43,9 @@ class EvaluatePointCloudTest : public ::testing::Test {
     const Result result = Run(kAll);
     EXPECT_EQ(result.exit_code, 0) << result.err;
     EXPECT_EQ(result.err.find("WARNING: "), 0u) << result.err;
-    EXPECT_NE(result.err.find(part), std::string::npos) << result.err;
+    ExpectContains(result.err, part);
     EXPECT_EQ(result.err.find('\n'), result.err.size() - 1) << result.err;
-    EXPECT_NE(result.out.find("F1-scores: "), std::string::npos);
+    ExpectContains(result.out, "F1-scores: ");
   }
 
   std::vector<std::string> FilesIn(const std::string& name) const {
@@ -133,13 +133,12 @@ TEST_F(EvaluatePointCloudTest, OptionsOfTheBeamAndTheVoxels) {
 
   // All in one cube of either grid.
   const Result result = Run(kAll + "--voxel_size 100 --num_threads 3");
-  EXPECT_NE(result.out.find("Completenesses: 0.5 0.5\n"), std::string::npos);
+  ExpectContains(result.out, "Completenesses: 0.5 0.5\n");
   WritePoints(folder_.File("gt/s.ply"),
               {{4, 0, 0.25f}, {4, 2, 0.25f}, {4, 2, 0.25f}, {4, 2, 0.25f}});
-  EXPECT_NE(
-      Run(kAll + "--voxel_size 100").out.find("Completenesses: 0.25 0.25\n"),
-      std::string::npos);
-  EXPECT_NE(Run(kAll).out.find("Completenesses: 0.5 0.5\n"), std::string::npos);
+  ExpectContains(Run(kAll + "--voxel_size 100").out,
+                 "Completenesses: 0.25 0.25\n");
+  ExpectContains(Run(kAll).out, "Completenesses: 0.5 0.5\n");
 }
 
 TEST_F(EvaluatePointCloudTest, ColoredClouds) {
@@ -182,7 +181,7 @@ TEST_F(EvaluatePointCloudTest, ColoredClouds) {
 TEST_F(EvaluatePointCloudTest, Help) {
   const Result result = Run("--help");
   EXPECT_EQ(result.exit_code, 0);
-  EXPECT_NE(result.out.find("--reconstruction_ply_path"), std::string::npos);
+  ExpectContains(result.out, "--reconstruction_ply_path");
 }
 
 TEST_F(EvaluatePointCloudTest, BadArguments) {
@@ -236,9 +235,9 @@ TEST_F(EvaluatePointCloudTest, BadScans) {
 TEST_F(EvaluatePointCloudTest, EmptyClouds) {
   WritePoints(folder_.File("r.ply"), {});
   ExpectWarning("r.ply has no points; all scores are 0");
-  EXPECT_NE(Run(kAll).out.find("Completenesses: 0 0\nAccuracies: 0 0\n"
-                               "F1-scores: 0 0\n"),
-            std::string::npos);
+  ExpectContains(Run(kAll).out,
+                 "Completenesses: 0 0\nAccuracies: 0 0\n"
+                 "F1-scores: 0 0\n");
   WritePoints(folder_.File("gt/s.ply"), {});
   EXPECT_EQ(Run(kAll).exit_code, 1);
   WritePoints(folder_.File("r.ply"), {{4, 0, 0.25f}});
@@ -249,12 +248,12 @@ TEST_F(EvaluatePointCloudTest, NotFinitePoints) {
   WritePoints(folder_.File("r.ply"),
               {{4, 0, 0.25f}, {NAN, 0, 0}, {3, 0, 0.1875f}});
   ExpectWarning("r.ply has 1 points with a coordinate that is infinite or not");
-  EXPECT_NE(Run(kAll).out.find("Accuracies: 0.5 1\n"), std::string::npos);
+  ExpectContains(Run(kAll).out, "Accuracies: 0.5 1\n");
   SetUp();
   WritePoints(folder_.File("gt/s.ply"),
               {{4, 0, 0.25f}, {INFINITY, 0, 0}, {4, 2, 0.25f}});
   ExpectWarning("gt/s.ply has 1 points");
-  EXPECT_NE(Run(kAll).out.find("Completenesses: 0.5 0.5\n"), std::string::npos);
+  ExpectContains(Run(kAll).out, "Completenesses: 0.5 0.5\n");
 }
 
 TEST_F(EvaluatePointCloudTest, AnotherUnit) {
@@ -269,31 +268,28 @@ TEST_F(EvaluatePointCloudTest, AnotherUnit) {
   WritePoints(folder_.File("gt/s.ply"), millimetres);
   const Result result = Run(kAll);
   EXPECT_EQ(result.exit_code, 0);
-  EXPECT_NE(result.err.find("WARNING: gt/s.ply is 1e+03 times larger than the "
-                            "reconstruction"),
-            std::string::npos)
-      << result.err;
-  EXPECT_NE(result.err.find("both are in metres"), std::string::npos);
+  ExpectContains(result.err,
+                 "WARNING: gt/s.ply is 1e+03 times larger than the "
+                 "reconstruction");
+  ExpectContains(result.err, "both are in metres");
 }
 
 TEST_F(EvaluatePointCloudTest, AnotherFrame) {
   WritePoints(folder_.File("r.ply"), {{4, 50, 0.25f}, {4, 52, 0.1875f}});
   const Result result = Run(kAll);
   EXPECT_EQ(result.exit_code, 0);
-  EXPECT_NE(result.err.find("WARNING: no point of the scans is within 1.5 m"),
-            std::string::npos)
-      << result.err;
-  EXPECT_NE(result.err.find("WARNING: no point of the reconstruction can be "
-                            "judged"),
-            std::string::npos);
-  EXPECT_NE(result.out.find("F1-scores: 0 0\n"), std::string::npos);
+  ExpectContains(result.err, "WARNING: no point of the scans is within 1.5 m");
+  ExpectContains(result.err,
+                 "WARNING: no point of the reconstruction can be "
+                 "judged");
+  ExpectContains(result.out, "F1-scores: 0 0\n");
 }
 
 TEST_F(EvaluatePointCloudTest, OutputThatCannotBeWritten) {
   WriteText(folder_.File("file"), "");
   const Result json = Run(kAll + "--json none/s.json");
   ExpectErrorLine(json, 1, "Cannot write none/s.json");
-  EXPECT_NE(json.out.find("F1-scores: "), std::string::npos);
+  ExpectContains(json.out, "F1-scores: ");
   ExpectError(kAll + "--completeness_cloud_output_path file/c",
               "Cannot write file/c.tolerance_0.125.ply");
   ExpectError(kAll + "--accuracy_cloud_output_path file/a",

@@ -43,7 +43,7 @@ inline void ExpectErrorLine(const Result& result, int exit_code,
                             const std::string& part) {
   EXPECT_EQ(result.exit_code, exit_code) << result.err;
   EXPECT_EQ(result.err.find("ERROR: "), 0u) << result.err;
-  EXPECT_NE(result.err.find(part), std::string::npos) << result.err;
+  ExpectContains(result.err, part);
   EXPECT_EQ(result.err.find('\n'), result.err.size() - 1) << result.err;
 }
 

@@ -63,18 +63,15 @@ TEST(ScoreTableTest, TableIsAligned) {
   for (const std::string& row : table) {
     EXPECT_EQ(row.size(), table[0].size()) << row;
   }
-  EXPECT_NE(table[2].find("75.0"), std::string::npos) << table[2];
-  EXPECT_NE(table[2].find("250.00"), std::string::npos) << table[2];
-  EXPECT_NE(table[2].find("85.7"), std::string::npos) << table[2];
+  ExpectContains(table[2], "75.0");
+  ExpectContains(table[2], "250.00");
+  ExpectContains(table[2], "85.7");
   EXPECT_EQ(table[3].back(), '-') << table[3];
-  EXPECT_NE(stream.str().find("25 cm               75.00      100.00  85.71"),
-            std::string::npos)
-      << stream.str();
-  EXPECT_NE(stream.str().find("Textureness below 0.75: coverage 75.0 % of 4 "
-                              "pixels, 75.0 % of those with a measurement\n"
-                              "Tolerance  Completeness %"),
-            std::string::npos)
-      << stream.str();
+  ExpectContains(stream.str(), "25 cm               75.00      100.00  85.71");
+  ExpectContains(stream.str(),
+                 "Textureness below 0.75: coverage 75.0 % of 4 "
+                 "pixels, 75.0 % of those with a measurement\n"
+                 "Tolerance  Completeness %");
 }
 
 TEST(ScoreTableTest, Json) {

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -41,6 +42,26 @@ class TemporaryFolder {
  private:
   std::filesystem::path path_;
 };
+
+inline void ExpectContains(const std::string& text, const std::string& part) {
+  EXPECT_NE(text.find(part), std::string::npos)
+      << "'" << part << "' is not in: " << text;
+}
+
+// That reading a file fails with one line, which names it and says `part`.
+template <typename Read>
+void ExpectReadError(const Read& read, const std::string& path,
+                     const std::string& part) {
+  try {
+    read(path);
+    ADD_FAILURE() << "no error: " << part;
+  } catch (const std::runtime_error& error) {
+    const std::string text = error.what();
+    ExpectContains(text, path);
+    ExpectContains(text, part);
+    EXPECT_EQ(text.find('\n'), std::string::npos) << text;
+  }
+}
 
 inline void WriteText(const std::string& path, const std::string& text) {
   std::ofstream(path, std::ios::binary) << text;

@@ -4,13 +4,10 @@
 import argparse
 import contextlib
 import io
-import os
-import sys
 import unittest
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)),
-                                "../../scripts"))
-from evaluation import command_line, processes  # noqa: E402
+import helpers  # noqa: F401 (it finds the package)
+from evaluation import command_line, processes
 
 
 class ParserTest(unittest.TestCase):

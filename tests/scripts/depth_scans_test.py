@@ -4,17 +4,14 @@ import math
 import os
 import re
 import subprocess
-import sys
-import tempfile
 import unittest
 
 import cv2
 import numpy as np
 
-SCRIPTS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../scripts")
-sys.path.insert(0, SCRIPTS)
-from evaluation import colmap_model, depth_maps, depth_scans  # noqa: E402
-from evaluation.processes import Failure  # noqa: E402
+from helpers import ROOT, TestCase
+from evaluation import colmap_model, depth_maps, depth_scans
+from evaluation.processes import Failure
 
 
 def read_ply(path):
@@ -36,39 +33,32 @@ def read_project(path):
     return [(name, np.array(matrix.split(), float).reshape(4, 4)) for name, matrix in found]
 
 
-class DepthScans(unittest.TestCase):
+class DepthScans(TestCase):
 
     def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="tapa-")
-        self.addCleanup(folder.cleanup)
-        self.folder = folder.name
-        self.out = os.path.join(self.folder, "scans")
-        os.makedirs(os.path.join(self.folder, "sparse"))
-        os.makedirs(os.path.join(self.folder, "gt_depth"))
+        super().setUp()
+        self.out = self.path("scans")
+        self.write_model()
 
     def write_model(self, camera="PINHOLE 2 2 2 2 1 1"):
         # The second camera looks along the world's x axis from (5, 0, 0).
         half = math.sqrt(0.5)
-        for name, text in (
-                ("cameras.txt", f"0 {camera}\n"),
-                ("images.txt", "1 1 0 0 0 0 0 0 0 a.jpg\n\n"
-                 f"2 {half} 0 {-half} 0 0 0 -5 0 sub/b.jpg\n\n")):
-            with open(os.path.join(self.folder, "sparse", name), "w", encoding="utf-8") as file:
-                file.write(text)
+        self.write("sparse/cameras.txt", f"0 {camera}\n")
+        self.write("sparse/images.txt", "1 1 0 0 0 0 0 0 0 a.jpg\n\n"
+                   f"2 {half} 0 {-half} 0 0 0 -5 0 sub/b.jpg\n\n")
 
     def write_depth(self, name, metres):
-        path = os.path.join(self.folder, "gt_depth", name)
+        path = self.write("gt_depth/" + name)
         if name.endswith(".bin"):
             depth_maps.write_bin(path, np.array(metres, np.float32))
         else:
             cv2.imwrite(path, np.rint(4000 * np.array(metres)).astype(np.uint16))
 
     def test_points_by_hand(self):
-        self.write_model()
         self.write_depth("a.png", [[4, 0], [0, 8]])
         project = depth_scans.make_scans(self.folder, self.out, ["a"])
         # Rays are (-1/4, -1/4, 1) and (1/4, 1/4, 1); forward is x, left y, up z.
-        np.testing.assert_allclose(read_ply(os.path.join(self.out, "scan1.ply")),
+        np.testing.assert_allclose(read_ply(self.path("scans/scan1.ply")),
                                    [[4, 1, 1], [8, -2, -2]])
         (name, matrix), = read_project(project)
         self.assertEqual(name, "scan1.ply")
@@ -76,11 +66,10 @@ class DepthScans(unittest.TestCase):
         np.testing.assert_allclose(world[:, :3], [[-1, -1, 4], [2, 2, 8]], atol=1e-12)
 
     def test_pose(self):
-        self.write_model()
         self.write_depth("b.bin", [[20, 0], [0, 0]])
         project = depth_scans.make_scans(self.folder, self.out, ["sub/b.jpg"])
         (_, matrix), = read_project(project)
-        points = read_ply(os.path.join(self.out, "scan1.ply"))
+        points = read_ply(self.path("scans/scan1.ply"))
         # Forward is +x from (5, 0, 0), right is -z; the ray goes 5 left and 5 up (-y).
         world = matrix[:3, :3] @ points[0] + matrix[:3, 3]
         np.testing.assert_allclose(world, [25, -5, 5], atol=1e-6)
@@ -89,7 +78,7 @@ class DepthScans(unittest.TestCase):
         self.write_model("PINHOLE 4 4 4 4 2 2")
         self.write_depth("a.png", [[4, 0], [0, 8]])
         depth_scans.make_scans(self.folder, self.out, ["a.jpg"])
-        np.testing.assert_allclose(read_ply(os.path.join(self.out, "scan1.ply")),
+        np.testing.assert_allclose(read_ply(self.path("scans/scan1.ply")),
                                    [[4, 1, 1], [8, -2, -2]])
 
     def test_occlusion_leaves_no_points_in_the_air(self):
@@ -99,14 +88,14 @@ class DepthScans(unittest.TestCase):
         depth[10:30, 10:30] = 2.0
         self.write_depth("a.png", depth)
         depth_scans.make_scans(self.folder, self.out, ["a"], voxel_size=0.3)
-        points = read_ply(os.path.join(self.out, "scan1.ply"))
+        points = read_ply(self.path("scans/scan1.ply"))
         self.assertEqual(set(np.round(points[:, 0], 5)), {2.0, 6.0})
         # Behind the square nothing was measured: its shadow on the wall is 3 m wide.
         wall = points[points[:, 0] > 4]
         self.assertGreater(np.abs(wall[:, 1:]).max(axis=1).min(), 1.5)
         # Thinned points are some of those that were there.
         depth_scans.make_scans(self.folder, self.out, ["a"])
-        everything = {tuple(point) for point in read_ply(os.path.join(self.out, "scan1.ply"))}
+        everything = {tuple(point) for point in read_ply(self.path("scans/scan1.ply"))}
         self.assertEqual(len(everything), 1600)
         self.assertTrue({tuple(point) for point in points} < everything)
 
@@ -115,29 +104,23 @@ class DepthScans(unittest.TestCase):
                            [-0.1, 0.5, 0.5], [1.0, 0.5, 0.5]])
         np.testing.assert_array_equal(depth_scans.thin(points, 1.0), points[[1, 3, 4]])
 
-    def test_max_depth_and_every(self):
-        self.write_model()
+    def test_all_views_are_scanners(self):
         self.write_depth("a.png", [[4, 0], [0, 8]])
         self.write_depth("b.bin", [[3, 0], [0, 0]])
-        project = depth_scans.make_scans(self.folder, self.out, every=1, max_depth=4)
+        project = depth_scans.make_scans(self.folder, self.out)
         self.assertEqual([name for name, _ in read_project(project)], ["scan1.ply", "scan2.ply"])
-        self.assertEqual(len(read_ply(os.path.join(self.out, "scan1.ply"))), 1)
-        project = depth_scans.make_scans(self.folder, self.out, every=2)
-        self.assertEqual(len(read_project(project)), 1)
 
     def test_unknown_scanner(self):
-        self.write_model()
         self.write_depth("a.png", [[4, 0], [0, 8]])
         with self.assertRaisesRegex(Failure, "no photograph c"):
             depth_scans.make_scans(self.folder, self.out, ["c"])
         with self.assertRaisesRegex(Failure, "no depth of sub/b.jpg"):
             depth_scans.make_scans(self.folder, self.out, ["a", "b"])
-        self.assertFalse(os.path.exists(os.path.join(self.out, "scan_alignment.mlp")))
+        self.assertFalse(os.path.exists(self.path("scans/scan_alignment.mlp")))
 
     def test_command(self):
-        self.write_model()
         self.write_depth("a.png", [[4, 0], [0, 8]])
-        program = os.path.join(SCRIPTS, "evaluation", "depth_scans.py")
+        program = os.path.join(ROOT, "evaluation", "depth_scans.py")
         result = subprocess.run([program, self.folder, self.out, "--scanners", "a"],
                                 capture_output=True, text=True, check=False)
         self.assertEqual((result.returncode, result.stderr), (0, ""))
@@ -149,7 +132,7 @@ class DepthScans(unittest.TestCase):
         self.assertRegex(result.stderr, "^ERROR: .*no depth to scan\n$")
 
     def test_damaged_maps(self):
-        path = os.path.join(self.folder, "map.bin")
+        path = self.path("map.bin")
         for content, text in ((b"3&2&1&1234", "not the size"), (b"nothing", "no depth map")):
             with open(path, "wb") as file:
                 file.write(content)

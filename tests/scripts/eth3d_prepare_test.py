@@ -1,19 +1,15 @@
 """ETH3D's scenes, the warp of their depth and the layout of submissions."""
 
 import os
-import shutil
 import subprocess
-import sys
-import tempfile
 import unittest
 
 import numpy as np
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../scripts"))
-from evaluation import (colmap_model, depth_maps, eth3d_prepare, eth3d_scenes,  # noqa: E402
-                        eth3d_submit, run_record)
-from evaluation.processes import Failure  # noqa: E402
-from helpers import make_record  # noqa: E402
+from helpers import TestCase, make_record
+from evaluation import colmap_model, depth_maps, record
+from evaluation.eth3d import download, prepare, scenes, submit
+from evaluation.processes import Failure
 
 UNDISTORTED = colmap_model.Camera("PINHOLE", 150, 100, (100.0, 100.0, 75.0, 50.0))
 # Sees less than the undistorted photograph, and is not centred.
@@ -30,47 +26,46 @@ class Scenes(unittest.TestCase):
 
     def test_table(self):
         def names(resolution, split):
-            return [scene.name for scene in eth3d_scenes.select(
-                eth3d_scenes.all_scenes(), resolution, split)]
+            return [scene.name for scene in scenes.select(
+                scenes.all_scenes(), resolution, split)]
 
         self.assertEqual(len(names("high", "training")), 13)
         self.assertEqual(len(names("high", "test")), 12)
         self.assertEqual(len(names("low", "training")), 5)
         self.assertEqual(len(names("low", "test")), 5)
-        everything = eth3d_scenes.select(eth3d_scenes.all_scenes(), "both", "both")
+        everything = scenes.select(scenes.all_scenes(), "both", "both")
         self.assertEqual(len({scene.set_name for scene in everything}), 35)
 
     def test_archives(self):
-        scenes = eth3d_scenes.select(eth3d_scenes.all_scenes(), "both", "both",
-                                     ["office", "tunnel"])
-        self.assertEqual([scene.archives() for scene in scenes], [
+        chosen = scenes.select(scenes.all_scenes(), "both", "both", ["office", "tunnel"])
+        self.assertEqual([scene.archives() for scene in chosen], [
             ["office_dslr_undistorted.7z", "office_dslr_scan_eval.7z", "office_dslr_jpg.7z",
              "office_dslr_depth.7z"], ["tunnel_rig_undistorted.7z"]])
-        self.assertEqual(scenes[0].archives(with_depth=False),
+        self.assertEqual(chosen[0].archives(with_depth=False),
                          ["office_dslr_undistorted.7z", "office_dslr_scan_eval.7z"])
-        rig, = eth3d_scenes.select(eth3d_scenes.all_scenes(), "low", "both", ["electro"])
+        rig, = scenes.select(scenes.all_scenes(), "low", "both", ["electro"])
         self.assertEqual(rig.archives()[2:], ["electro_rig.7z", "electro_rig_depth.7z"])
 
     def test_fusion_of_the_paper(self):
-        errors = {name: track.fusion[1] for name, track in eth3d_scenes.TRACKS.items()}
+        errors = {name: track.fusion[1] for name, track in scenes.TRACKS.items()}
         self.assertEqual(errors, {"high": "1", "low": "0.5"})
-        for track in eth3d_scenes.TRACKS.values():
+        for track in scenes.TRACKS.values():
             self.assertEqual(track.fusion[3], "20")
 
     def test_unknown_scene(self):
         with self.assertRaisesRegex(Failure, "no scene ofice of high"):
-            eth3d_scenes.select(eth3d_scenes.all_scenes(), names=["ofice"])
+            scenes.select(scenes.all_scenes(), names=["ofice"])
         with self.assertRaisesRegex(Failure, "no scene door"):  # Of the test split.
-            eth3d_scenes.select(eth3d_scenes.all_scenes(), names=["door"])
+            scenes.select(scenes.all_scenes(), names=["door"])
 
 
-class Warp(unittest.TestCase):
+class Warp(TestCase):
 
     def warped_plane(self, size, scale=1.0):
-        camera = eth3d_prepare._scaled(UNDISTORTED, size)
+        camera = prepare._scaled(UNDISTORTED, size)
         u, v = colmap_model.unproject(ORIGINAL, *colmap_model.pixel_centres(ORIGINAL))
         depth = plane_depth(u, v, scale).astype(np.float32)
-        warped = eth3d_prepare.warp(depth, eth3d_prepare.sampled_pixels(ORIGINAL, camera))
+        warped = prepare.warp(depth, prepare.sampled_pixels(ORIGINAL, camera))
         self.assertEqual(warped.shape, (camera.height, camera.width))
         u, v = colmap_model.unproject(camera, *colmap_model.pixel_centres(camera))
         x, y = colmap_model.project(ORIGINAL, u, v)
@@ -99,68 +94,55 @@ class Warp(unittest.TestCase):
         shifted = colmap_model.Camera(ORIGINAL.model, 160, 110, tuple(
             value + (1.5 if i == 2 else 0) for i, value in enumerate(ORIGINAL.params)))
         u, v = colmap_model.unproject(ORIGINAL, *colmap_model.pixel_centres(ORIGINAL))
-        warped = eth3d_prepare.warp(plane_depth(u, v).astype(np.float32),
-                                    eth3d_prepare.sampled_pixels(shifted, UNDISTORTED))
+        warped = prepare.warp(plane_depth(u, v).astype(np.float32),
+                                    prepare.sampled_pixels(shifted, UNDISTORTED))
         u, v = colmap_model.unproject(UNDISTORTED, *colmap_model.pixel_centres(UNDISTORTED))
         known = warped > 0
         error = np.abs(1 / warped[known] - 1 / plane_depth(u, v)[known])
         self.assertGreater(error.max(), (1 / 2 + 1 / 3) / 4 / 190)
 
     def test_names_of_originals(self):
-        self.assertEqual(eth3d_prepare.original_name("dslr_images_undistorted/DSC_0101.JPG"),
+        self.assertEqual(prepare.original_name("dslr_images_undistorted/DSC_0101.JPG"),
                          "dslr_images/DSC_0101.JPG")
-        self.assertEqual(eth3d_prepare.original_name("images_rig_cam4_undistorted/1.png"),
+        self.assertEqual(prepare.original_name("images_rig_cam4_undistorted/1.png"),
                          "images_rig_cam4/1.png")
 
     def test_map_in_a_file(self):
-        with tempfile.TemporaryDirectory(prefix="tapa-") as folder:
-            path = os.path.join(folder, "sub", "map.bin")
-            warped, _, _ = self.warped_plane(0, scale=20)
-            depth_maps.write_bin(path, warped)
-            np.testing.assert_array_equal(depth_maps.read(path), warped)
+        warped, _, _ = self.warped_plane(0, scale=20)
+        depth_maps.write_bin(self.path("sub/map.bin"), warped)
+        np.testing.assert_array_equal(depth_maps.read(self.path("sub/map.bin")), warped)
 
 
-class Submission(unittest.TestCase):
+class Submission(TestCase):
 
     HEADER = ("ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty float x\n"
               "property float y\nproperty float z\nend_header\n")
 
     def setUp(self):
-        self.folder = tempfile.mkdtemp(prefix="tapa-")
-        self.addCleanup(shutil.rmtree, self.folder)
-        self.run_folder = os.path.join(self.folder, "run")
-        self.track = os.path.join(self.folder, "high_res_multi_view")
-        self.write_cloud(self.HEADER.format(1).encode() + bytes(12))
+        super().setUp()
+        self.track = self.path("high_res_multi_view")
+        self.cloud = self.write("run/fused.ply", self.HEADER.format(1) + 12 * "\0")
         self.write_record({"stereo": 10.25, "fused": 2.25})
 
-    def write_cloud(self, data):
-        os.makedirs(self.run_folder, exist_ok=True)
-        with open(os.path.join(self.run_folder, "fused.ply"), "wb") as file:
-            file.write(data)
-
     def write_record(self, seconds):
-        run_record.save(self.run_folder, make_record(seconds=seconds))
+        record.save(self.path("run"), make_record(seconds=seconds))
 
     def add(self):
-        eth3d_submit.add_scene(self.track, "office", self.run_folder, "fused")
+        submit.AddScene(self.track, "office", self.path("run"), "fused").run()
 
     def test_layout(self):
         self.add()
         self.add()  # Again does no harm.
-        path = eth3d_submit.pack(self.track)
-        self.assertEqual(path, self.track + ".7z")
+        submit.Pack(self.track).run()
         self.assertEqual(sorted(os.listdir(self.folder)),
                          ["high_res_multi_view", "high_res_multi_view.7z", "run"])
-        out = os.path.join(self.folder, "unpacked")
-        subprocess.run([eth3d_submit.seven_zip(), "x", "-o" + out, path], check=True,
-                       stdout=subprocess.DEVNULL)
-        self.assertEqual(os.listdir(out), ["high_res_multi_view"])
-        inside = os.path.join(out, "high_res_multi_view")
-        self.assertEqual(sorted(os.listdir(inside)), ["office.ply", "office.txt"])
-        with open(os.path.join(inside, "office.txt"), encoding="ascii") as file:
-            self.assertEqual(file.read(), "runtime 12.500\n")
-        with open(os.path.join(inside, "office.ply"), "rb") as file:
-            self.assertEqual(file.read(), self.HEADER.format(1).encode() + bytes(12))
+        subprocess.run([download.seven_zip(), "x", "-o" + self.path("unpacked"),
+                        self.track + ".7z"], check=True, stdout=subprocess.DEVNULL)
+        self.assertEqual(os.listdir(self.path("unpacked")), ["high_res_multi_view"])
+        inside = "unpacked/high_res_multi_view"
+        self.assertEqual(sorted(os.listdir(self.path(inside))), ["office.ply", "office.txt"])
+        self.assertEqual(self.read(inside, "office.txt"), "runtime 12.500\n")
+        self.assertEqual(self.read(inside, "office.ply"), self.HEADER.format(1) + 12 * "\0")
 
     def expect_failure(self, text):
         with self.assertRaisesRegex(Failure, text):
@@ -168,17 +150,17 @@ class Submission(unittest.TestCase):
         self.assertFalse(os.path.exists(os.path.join(self.track, "office.txt")))
 
     def test_what_the_server_would_not_take(self):
-        self.write_cloud(self.HEADER.format(0).encode())
+        self.write("run/fused.ply", self.HEADER.format(0))
         self.expect_failure("holds no points")
-        self.write_cloud(b"ply\nformat ascii 1.0\nelement vertex 1\nend_header\n1 2 3\n")
+        self.write("run/fused.ply", "ply\nformat ascii 1.0\nelement vertex 1\nend_header\n1 2 3\n")
         self.expect_failure("no binary little-endian PLY")
-        os.remove(os.path.join(self.run_folder, "fused.ply"))
+        os.remove(self.cloud)
         self.expect_failure("cannot be read")
 
     def test_time_that_is_not_known(self):
         self.write_record({"stereo": None, "fused": 2.0})
         self.expect_failure("not known how long")
-        os.remove(os.path.join(self.run_folder, "record.json"))
+        os.remove(self.path("run/record.json"))
         self.expect_failure("has no run")
 
 

@@ -1,11 +1,15 @@
-"""What the tests of scripts/evaluation share; these find that package."""
+"""What the tests of the package evaluation share; importing this finds it."""
 
 import os
+import stat
+import sys
 import tempfile
 import unittest
 
-from evaluation import processes
-from evaluation.methods import METHODS
+ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../..")
+sys.path.insert(0, ROOT)
+from evaluation import processes, record  # noqa: E402
+from evaluation.methods import METHODS  # noqa: E402
 
 
 class TestCase(unittest.TestCase):
@@ -25,6 +29,22 @@ class TestCase(unittest.TestCase):
         with open(self.path(*parts), encoding="utf-8") as file:
             return file.read()
 
+    def write(self, name, text="", executable=False):
+        """Writes a file, makes the folders above it and returns its path."""
+        path = self.path(name)
+        os.makedirs(os.path.dirname(path), exist_ok=True)
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(text)
+        if executable:
+            os.chmod(path, stat.S_IRWXU)
+        return path
+
+
+def run_step(step):
+    """As steps.perform() does, but what fails is raised."""
+    if not step.is_done():
+        step.run()
+
 
 def made_with(version="COLMAP 3.8", gpu=None):
     """How a step of a run was made that nobody has run."""
@@ -34,12 +54,12 @@ def made_with(version="COLMAP 3.8", gpu=None):
 
 def make_record(name="s", method="plain", seed=0, options=(), **values):
     """The record of such a run. values: in place of those here."""
-    return {
-        "set": name, "method": method, "seed": seed, "sources": 10, "every": 1,
-        "options": ["--PatchMatchStereo.seed", str(seed),
-                    *METHODS.get(method, []), *options],
+    kind = record.ComparisonRecord if "compare" in values else record.RunRecord
+    return kind(**{
+        "set": name, "method": method, "seed": seed,
+        **({} if "compare" in values else {"sources": 10, "every": 1}),
+        "options": ["--PatchMatchStereo.seed", str(seed), *METHODS.get(method, []), *options],
         "fusion_options": {}, "made_with": {"stereo": [made_with()]},
-        "views": 4, "image_size": [500, 500], "done": ["stereo"],
-        "failed": None, "seconds": {"stereo": 70.0},
-        "cpu_seconds": {"stereo": 120.0},
-        "peak_memory_bytes": {"stereo": 300e6}, **values}
+        "views": 4, "image_size": [500, 500], "done": ["stereo"], "failed": None,
+        "seconds": {"stereo": 70.0}, "cpu_seconds": {"stereo": 120.0},
+        "peak_memory_bytes": {"stereo": 300e6}, **values})

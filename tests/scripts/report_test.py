@@ -4,17 +4,16 @@
 import csv
 import io
 import os
-import sys
 import unittest
 
-_ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../..")
-sys.path.insert(0, os.path.join(_ROOT, "scripts"))
-from evaluation import (benchmark, eth3d_report, eth3d_scenes,  # noqa: E402
-                        paper_tables, figures, files, pictures, plan,
-                        published, report, results, run_record, tables)
-from evaluation.methods import LABELS, METHODS, TAPA_ABLATION  # noqa: E402
-from evaluation.processes import Failure  # noqa: E402
-from helpers import TestCase, made_with, make_record  # noqa: E402
+from helpers import ROOT, TestCase, made_with, make_record
+from evaluation import (depth_scores, figures, files, pictures, plan, record, report, results,
+                        tables)
+from evaluation.eth3d import paper_tables, published, scenes
+from evaluation.eth3d.report import Eth3dReport, groups_of
+from evaluation.experiment import Experiment
+from evaluation.methods import LABELS, METHODS, TAPA_ABLATION
+from evaluation.processes import Failure
 
 
 def depth_part(shares):
@@ -23,95 +22,98 @@ def depth_part(shares):
     for (value, unit), share in shares.items():
         accuracy = min(1, 2 * share)
         entries.append({"tolerance": value, "unit": unit, "completeness": share,
-                        "accuracy": accuracy,
-                        "f1": 2 * share * accuracy / (share + accuracy)})
-    return {"coverage": 0.5, "measurement_coverage": 0.625,
-            "median_absolute_error": 0.0123, "median_relative_error": 0.004,
-            "tolerances": entries}
+                        "accuracy": accuracy, "f1": 2 * share * accuracy / (share + accuracy)})
+    return {"coverage": 0.5, "measurement_coverage": 0.625, "median_absolute_error": 0.0123,
+            "median_relative_error": 0.004, "tolerances": entries}
 
 
-def write_result(out, name, method, seed=0, depth=None, low=None, f1=None,
-                 options=(), **record):
-    """depth, low: as depth_part(); f1: of points at 2 cm, by cloud; record: as values."""
-    folder = os.path.join(out, name, f"{method}-{seed}")
-    run_record.save(folder, make_record(name, method, seed, options, **record))
-    if depth:
-        files.write_json(os.path.join(folder, "depth_scores.json"), {
-            "overall": depth_part(depth), "images": [],
-            "by_textureness": [{"max_textureness": bound,
-                                "score": depth_part(part)}
-                               for bound, part in (low or {}).items()]})
-    if f1:
-        files.write_json(os.path.join(folder, "cloud_scores.json"), {
-            cloud: {"tolerances": [0.01, 0.02], "completeness": [0.1, value],
-                    "accuracy": [0.1, value], "f1": [0.1, value]}
-            for cloud, value in f1.items()})
-    return folder
+class ResultsCase(TestCase):
+    """Results that nobody has run stand in a folder "out"."""
+
+    def setUp(self):
+        super().setUp()
+        self.out = self.path("out")
+
+    def write_result(self, name, method, seed=0, depth=None, low=None, f1=None, options=(),
+                     **values):
+        """depth, low: as depth_part(), f1: of points at 2 cm, by cloud; values: of the record."""
+        folder = self.path("out", name, f"{method}-{seed}")
+        record.save(folder, make_record(name, method, seed, options, **values))
+        if depth:
+            files.write_json(os.path.join(folder, "depth_scores.json"), {
+                "overall": depth_part(depth), "images": [],
+                "by_textureness": [{"max_textureness": bound, "score": depth_part(part)}
+                                   for bound, part in (low or {}).items()],
+                "made_from": {"maps": "", "truth": ""}})
+        if f1:
+            source = {"cloud": "", "scans": "", "evaluator": "evaluate_point_cloud",
+                      "options": []}
+            files.write_json(os.path.join(folder, "cloud_scores.json"), {
+                cloud: {"tolerances": [0.01, 0.02], "completeness": [0.1, value],
+                        "accuracy": [0.1, value], "f1": [0.1, value], "made_from": source}
+                for cloud, value in f1.items()})
+
+    def load(self, name="s"):
+        return results.load_set(self.out, name)
 
 
-class ResultsTest(TestCase):
+class ResultsTest(ResultsCase):
     def test_means_over_seeds(self):
         for seed, share in ((10, 0.5), (2, 0.25)):
-            write_result(self.folder, "s", "plain", seed, {(0.02, "m"): share})
-        found = results.load_set(self.folder, "s")
-        self.assertEqual([run.record["seed"] for run in found["plain"]], [2, 10])
-        score = results.depth_score(found["plain"], 0.02)
-        self.assertAlmostEqual(score.completeness, 0.375)
-        self.assertAlmostEqual(score.accuracy, 0.75)
+            self.write_result("s", "plain", seed, {(0.02, "m"): share})
+        runs = self.load()["plain"]
+        self.assertEqual([run.record.seed for run in runs], [2, 10])
+        score = results.depth_score(runs, 0.02)
         # Means of F1, not F1 of means: 1/3 and 2/3.
-        self.assertAlmostEqual(score.f1, 0.5)
-        self.assertAlmostEqual(score.least_f1, 1 / 3)
-        self.assertAlmostEqual(score.most_f1, 2 / 3)
-        self.assertEqual(tables.score_text(score),
-                         "37.5 / 75.0 / 50.0 (33.3-66.7)")
+        for value, expected in ((score.completeness, 0.375), (score.accuracy, 0.75),
+                                (score.f1, 0.5), (score.least_f1, 1 / 3),
+                                (score.most_f1, 2 / 3)):
+            self.assertAlmostEqual(value, expected)
+        self.assertEqual(tables.score_text(score), "37.5 / 75.0 / 50.0 (33.3-66.7)")
 
     def test_what_is_missing_is_none(self):
-        write_result(self.folder, "s", "plain")
-        found = results.load_set(self.folder, "s")
-        self.assertIsNone(results.depth_score(found["plain"], 0.02))
-        self.assertIsNone(results.depth_score(None, 0.02))
-        self.assertIsNone(results.cloud_score(found["plain"], 0.02))
-        self.assertIsNone(results.depth_value(found["plain"], "coverage"))
-        self.assertEqual(results.load_set(self.folder, "none"), {})
+        self.write_result("s", "plain")
+        runs = self.load()["plain"]
+        for value in (results.depth_score(runs, 0.02), results.depth_score(None, 0.02),
+                      results.cloud_score(runs, 0.02), results.depth_value(runs, "coverage")):
+            self.assertIsNone(value)
+        self.assertEqual(self.load("none"), {})
         self.assertEqual(tables.score_text(None), "-")
 
     def test_times(self):
-        write_result(self.folder, "s", "plain", 0)
-        write_result(self.folder, "s", "plain", 1, cpu_seconds={"stereo": 100.})
-        write_result(self.folder, "s", "plain", 2, cpu_seconds={"stereo": None})
-        write_result(self.folder, "s", "tapa", 0, cpu_seconds={"stereo": None})
-        found = results.load_set(self.folder, "s")
+        self.write_result("s", "plain", 0)
+        self.write_result("s", "plain", 1, cpu_seconds={"stereo": 100.})
+        self.write_result("s", "plain", 2, cpu_seconds={"stereo": None})
+        self.write_result("s", "tapa", 0, cpu_seconds={"stereo": None})
+        by_method = self.load()
         # 4 views of a quarter of a megapixel.
-        self.assertAlmostEqual(results.cpu_per_megapixel(found["plain"]), 110)
-        self.assertIsNone(results.cpu_per_megapixel(found["tapa"]))
+        self.assertAlmostEqual(results.cpu_per_megapixel(by_method["plain"]), 110)
+        self.assertIsNone(results.cpu_per_megapixel(by_method["tapa"]))
 
     def test_a_time_so_far_is_not_shown(self):
-        write_result(self.folder, "s", "plain", done=[])
-        found = results.load_set(self.folder, "s")
-        self.assertIsNone(results.step_value(found["plain"], "seconds"))
+        self.write_result("s", "plain", done=[])
+        self.assertIsNone(results.step_value(self.load()["plain"], "seconds"))
 
     def test_pooled_methods_have_all_sets(self):
-        write_result(self.folder, "a", "plain", depth={(0.02, "m"): 0.25})
-        write_result(self.folder, "b", "plain", depth={(0.02, "m"): 0.5})
-        write_result(self.folder, "a", "tapa", depth={(0.02, "m"): 0.5})
-        write_result(self.folder, "b", "tapa")  # Not scored.
-        found = results.pool(results.load_set(self.folder, name) for name in "ab")
-        self.assertEqual(list(found), ["plain"])
-        self.assertAlmostEqual(
-            results.depth_score(found["plain"], 0.02).completeness, 0.375)
+        self.write_result("a", "plain", depth={(0.02, "m"): 0.25})
+        self.write_result("b", "plain", depth={(0.02, "m"): 0.5})
+        self.write_result("a", "tapa", depth={(0.02, "m"): 0.5})
+        self.write_result("b", "tapa")  # Not scored.
+        pooled = results.pool(map(self.load, "ab"))
+        self.assertEqual(list(pooled), ["plain"])
+        self.assertAlmostEqual(results.depth_score(pooled["plain"], 0.02).completeness, 0.375)
 
     def test_mean_over_sets_needs_all(self):
-        write_result(self.folder, "a", "tapa", f1={"fused": 0.5})
-        write_result(self.folder, "b", "tapa", f1={"fused": 0.75})
-        write_result(self.folder, "c", "plain", f1={"fused": 0.75})
-        a, b, c = (results.load_set(self.folder, name) for name in "abc")
-        self.assertAlmostEqual(
-            results.mean_over_sets([a, b], "tapa", 0.02).f1, 0.625)
+        self.write_result("a", "tapa", f1={"fused": 0.5})
+        self.write_result("b", "tapa", f1={"fused": 0.75})
+        self.write_result("c", "plain", f1={"fused": 0.75})
+        a, b, c = map(self.load, "abc")
+        self.assertAlmostEqual(results.mean_over_sets([a, b], "tapa", 0.02).f1, 0.625)
         self.assertIsNone(results.mean_over_sets([a, b, c], "tapa", 0.02))
         self.assertIsNone(results.mean_over_sets([], "tapa", 0.02))
 
 
-class TablesTest(TestCase):
+class TablesTest(ResultsCase):
     def test_tolerances_as_text(self):
         for value, unit, text in ((0.07, "m", "7 cm"), (1.5, "m", "1.5 m"),
                                   (0.012345678, "m", "1.2345678 cm"),
@@ -119,37 +121,38 @@ class TablesTest(TestCase):
             self.assertEqual(tables.tolerance_text(value, unit), text)
 
     def test_depth_table(self):
-        write_result(self.folder, "s", "plain", depth={
-            (0.02, "m"): 0.25, (1, "%"): 0.5},
-            low={0.75: {(0.02, "m"): 0.125, (1, "%"): 0.125}})
-        found = results.load_set(self.folder, "s")
+        self.write_result("s", "plain", depth={(0.02, "m"): 0.25, (1, "%"): 0.5},
+                          low={0.75: {(0.02, "m"): 0.125, (1, "%"): 0.125}})
         columns = [(0.02, "m"), (1, "%")]
-        table = tables.depth_table(found, ["plain", "tapa"], columns)
+        table = tables.depth_table(self.load(), ["plain", "tapa"], columns)
         self.assertEqual(table.header, ["method", "2 cm", "1 %"])
-        self.assertEqual(table.rows, [
-            ["COLMAP", "25.0 / 50.0 / 33.3", "50.0 / 100.0 / 66.7"],
-            ["TAPA", "-", "-"]])
+        self.assertEqual(table.rows, [["COLMAP", "25.0 / 50.0 / 33.3", "50.0 / 100.0 / 66.7"],
+                                      ["TAPA", "-", "-"]])
         self.assertIn("| TAPA | - | - |\n", table.markdown())
         rows = list(csv.reader(io.StringIO(table.csv())))
-        self.assertEqual(rows[0][:5], ["method", "tolerance", "unit",
-                                       "completeness", "accuracy"])
+        self.assertEqual(rows[0], ["method", "tolerance", "unit", "completeness", "accuracy",
+                                   "f1", "least_f1", "most_f1", "runs"])
         self.assertEqual(rows[1][:5], ["plain", "0.02", "m", "0.25", "0.5"])
         self.assertEqual(rows[3], ["tapa", "0.02", "m", "", "", "", "", "", "0"])
-        low = tables.depth_table(found, ["plain"], columns, 0.75)
+        low = tables.depth_table(self.load(), ["plain"], columns, 0.75)
         self.assertEqual(low.rows[0][1], "12.5 / 25.0 / 16.7")
         self.assertIn("below 0.75", low.caption)
 
     def test_cost_table(self):
-        write_result(self.folder, "s", "plain", depth={(0.02, "m"): 0.25})
-        write_result(self.folder, "s", "tapa", seconds={"stereo": None},
-                     cpu_seconds={"stereo": None},
-                     peak_memory_bytes={"stereo": None})
-        found = results.load_set(self.folder, "s")
-        self.assertEqual(tables.cost_table(found, ["plain", "tapa", "x"]).rows, [
-            ["COLMAP", "1", "4", "500x500", "50.0", "62.5", "-", "12.3", "0.40",
-             "120", "70", "300"],
+        self.write_result("s", "plain", depth={(0.02, "m"): 0.25})
+        unknown = {"stereo": None}
+        self.write_result("s", "tapa", seconds=unknown, cpu_seconds=unknown,
+                          peak_memory_bytes=unknown)
+        table = tables.cost_table(self.load(), ["plain", "tapa", "x"])
+        self.assertEqual(table.rows, [
+            ["COLMAP", "1", "4", "500x500", "50.0", "62.5", "-", "12.3", "0.40", "120", "70",
+             "300"],
             ["TAPA", "1", "4", "500x500"] + ["-"] * 8,
             ["x", "0"] + ["-"] * 10])
+        self.assertEqual(table.csv().splitlines()[::3], [
+            "method,runs,views,size,coverage,measurement_coverage,low_texture_coverage,"
+            "median_absolute_error,median_relative_error,cpu_seconds_per_megapixel,"
+            "stereo_seconds,peak_memory_bytes", "x,0" + "," * 10])
 
     def test_published_figures_agree_with_each_other(self):
         # The overall mean is over 5 scenes of low and 13 or 12 of high resolution.
@@ -161,8 +164,7 @@ class TablesTest(TestCase):
                 self.assertAlmostEqual(cells[first], mean, delta=0.011)
         at_2_cm = published.TABLE2_TOLERANCES.index(0.02)
         for ours, theirs in (("paper", "TAPA-MVS"), ("plain", "COLMAP")):
-            self.assertEqual(published.TABLE2[ours][at_2_cm][2],
-                             published.TABLE1[theirs][2])
+            self.assertEqual(published.TABLE2[ours][at_2_cm][2], published.TABLE1[theirs][2])
         for column in published.TABLE2.values():
             self.assertEqual(len(column), 6)
             self.assertEqual(list(column), sorted(column))
@@ -170,181 +172,156 @@ class TablesTest(TestCase):
         self.assertLessEqual(set(TAPA_ABLATION), set(METHODS))
 
     def test_table1(self):
-        scenes = [scene for scene in eth3d_scenes.all_scenes()
-                  if scene.split == "training" and scene.resolution == "low"]
-        for i, scene in enumerate(scenes):
-            write_result(self.folder, scene.set_name, "tapa",
-                         f1={"fused": 0.5 + 0.01 * i})
-        table = paper_tables.table1(eth3d_report.groups_of(self.folder))
-        self.assertEqual(table.rows[0], ["TAPA", "this program", "-", "52.00",
-                                         "-", "-", "-", "-"])
+        low = scenes.select(scenes.all_scenes(), "low")
+        for i, scene in enumerate(low):
+            self.write_result(scene.set_name, "tapa", f1={"fused": 0.5 + 0.01 * i})
+        table = paper_tables.table1(groups_of(self.out))
+        self.assertEqual(table.rows[0], ["TAPA", "this program", "-", "52.00", "-", "-", "-",
+                                         "-"])
         self.assertEqual(table.rows[1][2:], ["-"] * 6)
-        self.assertIn(["COLMAP", "published", "62.73", "49.91", "67.66", "66.92",
-                       "52.32", "73.01"], table.rows)
+        self.assertIn(["COLMAP", "published", "62.73", "49.91", "67.66", "66.92", "52.32",
+                       "73.01"], table.rows)
         own = [row for row in table.csv_rows if row[1] == "own"]
-        self.assertEqual(own[0][2], None)
+        self.assertIsNone(own[0][2])
         self.assertAlmostEqual(own[0][3], 0.52)
         # One scene less, and there is no mean.
-        os.remove(self.path(scenes[0].set_name, "tapa-0", "cloud_scores.json"))
-        table = paper_tables.table1(eth3d_report.groups_of(self.folder))
-        self.assertEqual(table.rows[0][2:], ["-"] * 6)
+        os.remove(self.path("out", low[0].set_name, "tapa-0", "cloud_scores.json"))
+        self.assertEqual(paper_tables.table1(groups_of(self.out)).rows[0][2:], ["-"] * 6)
 
     def test_table2(self):
-        write_result(self.folder, "s", "plain", f1={"fused": 0.25})
-        write_result(self.folder, "s", "tapa", f1={"fused": 0.5})
-        table = paper_tables.table2([results.load_set(self.folder, "s")],
-                                    TAPA_ABLATION, with_published=True)
+        self.write_result("s", "plain", f1={"fused": 0.25})
+        self.write_result("s", "tapa", f1={"fused": 0.5})
+        table = paper_tables.table2([self.load()], TAPA_ABLATION, with_published=True)
         self.assertEqual(len(table.rows), 12)
         self.assertEqual(table.header[1], "COLMAP")
-        self.assertEqual(table.rows[1], [
-            "2 cm", "25.00 / 25.00 / 25.00", "-", "-", "-", "-",
-            "50.00 / 50.00 / 50.00"])
+        self.assertEqual(table.rows[1], ["2 cm", "25.00 / 25.00 / 25.00", "-", "-", "-", "-",
+                                         "50.00 / 50.00 / 50.00"])
         self.assertEqual(table.rows[2], ["5 cm"] + ["-"] * 6)
         self.assertEqual(table.rows[7][0], "2 cm, published")
         self.assertEqual(table.rows[7][6], "71.45 / 85.88 / 77.69")
         self.assertEqual(len(table.csv_rows), 6 * 6 * 2)
 
 
-class FiguresTest(TestCase):
-    def setUp(self):
-        super().setUp()
-        write_result(self.folder, "s", "plain", depth={
-            (error, "m"): i / 10 for i, error in enumerate(figures.ERRORS, 1)},
-            low={bound: {(0.1, "m"): bound / 2, (0.2, "m"): bound,
-                         (0.5, "m"): bound} for bound in (0.6, 1)})
-        write_result(self.folder, "empty", "plain")
-        self.found = results.load_set(self.folder, "s")
-        self.empty = results.load_set(self.folder, "empty")
-
+class FiguresTest(ResultsCase):
     def test_points(self):
-        points = figures.error_points(self.found["plain"])
-        self.assertEqual(points[0], (0.01, 0.1))
-        self.assertEqual(points[-1], (5, 0.9))
+        self.write_scores()
+        runs = self.load()["plain"]
+        points = figures.error_points(runs)
+        self.assertEqual((points[0], points[-1]), ((0.01, 0.1), (5, 0.9)))
         self.assertEqual(figures.error_points(None)[0], (0.01, None))
-        self.assertEqual(figures.textureness_points(self.found["plain"], 0.1),
-                         [(0.6, 0.3), (1, 0.5)])
+        self.assertEqual(figures.textureness_points(runs, 0.1), [(0.6, 0.3), (1, 0.5)])
         self.assertTrue(all(share is None for _, share in
                             figures.textureness_points(None, 0.1)))
+
+    def write_scores(self):
+        self.write_result("s", "plain", depth={
+            (error, "m"): i / 10 for i, error in enumerate(depth_scores.TOLERANCES, 1)},
+            low={bound: {(0.1, "m"): bound / 2, (0.2, "m"): bound, (0.5, "m"): bound}
+                 for bound in (0.6, 1)})
 
     def test_which_methods_are_drawn(self):
         methods = ["plain", "tapa", "tapa-fine", "paper", "other-tool"]
         self.assertEqual(figures.chosen_methods(methods),
                          ["plain", "tapa", "paper", "other-tool"])
-        self.assertEqual(pictures.chosen_methods(methods),
-                         ["plain", "tapa", "other-tool"])
+        self.assertEqual(pictures.chosen_methods(methods), ["plain", "tapa", "other-tool"])
         self.assertEqual(figures.chosen_methods(["tapa-fine"]), ["tapa-fine"])
         self.assertEqual(pictures.chosen_methods(["paper"]), ["paper"])
 
     def test_files(self):
-        for draw in (figures.draw_errors, figures.draw_textureness):
+        self.write_scores()
+        for draw, text in ((figures.draw_errors, "Higher is better"),
+                           (figures.draw_textureness, "0.5 is a flat wall")):
             path = self.path("f", draw.__name__ + ".png")
-            caption = draw(path, self.found, ["plain", "tapa"], "s")
-            self.assertIn("Higher is better" if draw is figures.draw_errors
-                          else "0.5 is a flat wall", caption)
+            self.assertIn(text, draw(path, self.load(), ["plain", "tapa"], "s"))
             with open(path, "rb") as file:
                 self.assertEqual(file.read(8), b"\x89PNG\r\n\x1a\n")
-            self.assertIsNone(draw(self.path("no.png"), self.empty, ["plain"],
-                                   "empty"))
+            self.assertIsNone(draw(self.path("no.png"), self.load("none"), ["plain"], "none"))
         self.assertFalse(os.path.exists(self.path("no.png")))
 
 
-class ReportTest(TestCase):
-    def report_of(self, one, **options):
-        out = self.path("out")
-        made = report.SetReport(one, out, out, os.path.join(out, "figures"),
-                                os.path.join(out, "tables"))
-        report.write_report(os.path.join(out, "report.md"), [made], "Title",
-                            **options)
-        return self.read("out", "report.md")
+class ReportTest(ResultsCase):
+    def report_of(self, name="s", failures=(), **settings):
+        experiment = Experiment(name=name, data=self.path("s"),
+                                **{"methods": ["plain"], **settings})
+        part = report.SetReport(experiment, self.out, self.out, self.path("out/figures"),
+                                self.path("out/tables"))
+        report.write_report(self.path("out/report.md"), [part], failures)
+        return self.read("out/report.md")
 
     def test_page(self):
-        write_result(self.path("out"), "s", "plain", depth={(0.02, "m"): 0.25},
-                     f1={"fused": 0.5, "fused_default": 0.25})
-        write_result(self.path("out"), "s", "tapa",
-                     failed={"step": "stereo", "message": "it broke"})
-        one = benchmark.Benchmark("s", self.path("s"), tolerances=[0.02],
-                                  methods=["plain", "tapa", "paper"])
-        text = self.report_of(one, failures=[("x", "it broke"), ("y", "oh")])
-        self.assertIn("| COLMAP | 25.0 / 50.0 / 33.3 | - |", text)
-        self.assertIn("| paper's TAPA | - | - |", text)
-        self.assertIn("- s: tapa, seed 0: stereo: it broke\n", text)
-        self.assertIn("- s: paper, seed 0: not run\n", text)
+        self.write_result("s", "plain", depth={(0.02, "m"): 0.25},
+                          f1={"fused": 0.5, "fused_default": 0.25})
+        self.write_result("s", "tapa", failed={"step": "stereo", "message": "it broke"})
+        text = self.report_of(tolerances=[0.02], methods=["plain", "tapa", "paper"],
+                              failures=[("x", "it broke"), ("y", "oh")])
+        for part in ("| COLMAP | 25.0 / 50.0 / 33.3 | - |", "| paper's TAPA | - | - |",
+                     "- s: tapa, seed 0: stereo: it broke\n", "- s: paper, seed 0: not run\n",
+                     "- y: oh\n", "fused with COLMAP's own thresholds",
+                     "| COLMAP | 50.0 / 50.0 / 50.0 |", "COLMAP 3.8 on abacus, 2 cores, 8 GB.",
+                     "![How far the depth maps are off](figures/s_errors.png)"):
+            self.assertIn(part, text)
         self.assertEqual(text.count("it broke"), 1)
-        self.assertIn("- y: oh\n", text)
-        self.assertIn("fused with COLMAP's own thresholds", text)
-        self.assertIn("| COLMAP | 50.0 / 50.0 / 50.0 |", text)
-        self.assertIn("COLMAP 3.8 on abacus, 2 cores, 8 GB.", text)
-        self.assertIn("![How far the depth maps are off](figures/s_errors.png)",
-                      text)
         self.assertTrue(os.path.exists(self.path("out/figures/s_errors.png")))
         self.assertIn("plain,0.02,m,0.25,0.5", self.read("out/tables/s_depth.csv"))
 
     def test_runs_in_parts(self):
-        write_result(self.path("out"), "s", "plain", 3, made_with={
-            "stereo": [made_with(gpu="NVIDIA X"), made_with("COLMAP 3.9")],
-            "fused": [made_with("COLMAP 3.9")]})
-        one = benchmark.Benchmark("s", self.path("s"), methods=["plain"], seeds=[3])
-        self.assertIn(
-            "Run with COLMAP 3.8; COLMAP 3.9 on abacus, 2 cores, 8 GB, stereo on "
-            "NVIDIA X; the CPU. Not made in one piece, by one version on one "
-            "machine: plain, seed 3.\n", self.report_of(one))
-        # Fusion does not use the GPU.
-        write_result(self.path("out"), "s", "plain", 3, made_with={
-            "stereo": [made_with(gpu="NVIDIA X")], "fused": [made_with()]})
-        self.assertIn("Run with COLMAP 3.8 on abacus, 2 cores, 8 GB, stereo on "
-                      "NVIDIA X.\n", self.report_of(one))
+        gpu = made_with(gpu="NVIDIA X")
+        for parts, text in (
+                ({"stereo": [gpu, made_with("COLMAP 3.9")], "fused": [made_with("COLMAP 3.9")]},
+                 "Run with COLMAP 3.8; COLMAP 3.9 on abacus, 2 cores, 8 GB, stereo on "
+                 "NVIDIA X; the CPU. Not made in one piece, by one version on one machine: "
+                 "plain, seed 3.\n"),
+                # Fusion does not use the GPU.
+                ({"stereo": [gpu], "fused": [made_with()]},
+                 "Run with COLMAP 3.8 on abacus, 2 cores, 8 GB, stereo on NVIDIA X.\n")):
+            self.write_result("s", "plain", 3, made_with=parts)
+            self.assertIn(text, self.report_of(seeds=[3]))
 
     def test_names_with_spaces(self):
-        write_result(self.path("out"), "a b", "plain", depth={(0.02, "m"): 0.25})
-        text = self.report_of(benchmark.Benchmark("a b", self.path("s"),
-                                                  methods=["plain"]))
-        self.assertIn("](figures/a%20b_errors.png)", text)
+        self.write_result("a b", "plain", depth={(0.02, "m"): 0.25})
+        self.assertIn("](figures/a%20b_errors.png)", self.report_of("a b"))
 
     def test_another_tool_s_maps_of_some_photographs(self):
-        write_result(self.path("out"), "s", "other", depth={(0.02, "m"): 0.25},
-                     compare=["x"], views=3, photographs=4)
-        text = self.report_of(benchmark.Benchmark(
-            "s", self.path("s"), methods=[], compare=[("other", "x")]))
-        self.assertIn("- s: other: maps of 3 of 4 photographs", text)
+        self.write_result("s", "other", depth={(0.02, "m"): 0.25}, compare=["x"], views=3,
+                          photographs=4)
+        self.assertIn("- s: other: maps of 3 of 4 photographs",
+                      self.report_of(methods=[], compare=[("other", "x")]))
 
     def test_results_of_other_options_are_left_out(self):
-        write_result(self.path("out"), "s", "plain", depth={(0.02, "m"): 0.25},
-                     options=["--PatchMatchStereo.num_iterations", "1"])
-        one = benchmark.Benchmark("s", self.path("s"), methods=["plain"])
-        text = self.report_of(one)
-        self.assertIn("plain, seed 0: the results in OUT were made with other "
-                      "options", text)
+        self.write_result("s", "plain", depth={(0.02, "m"): 0.25},
+                          options=["--PatchMatchStereo.num_iterations", "1"])
+        text = self.report_of()
+        self.assertIn("plain, seed 0: the results in OUT were made with other options", text)
         self.assertNotIn("25.0", text)
-        one.options = None  # Any.
-        self.assertIn("25.0", self.report_of(one))
+        self.assertIn("25.0", self.report_of(options=None))  # Any.
+
+    def eth3d_report_of(self, chosen, methods):
+        for scene in chosen:
+            os.makedirs(self.path("sets", scene.set_name, "images"))
+        path = Eth3dReport(self.path("report"), self.out, self.path("sets"), chosen,
+                           methods).write()
+        self.assertEqual(path, self.path("report/report.md"))
+        return self.read("report/report.md")
 
     def test_eth3d(self):
-        scene = eth3d_scenes.all_scenes()[0]
-        runs = self.path("runs")
-        os.makedirs(self.path("sets", scene.set_name, "images"))
-        write_result(runs, scene.set_name, "plain", depth={(0.02, "m"): 0.25},
-                     f1={"fused": 0.5}, options=["--any", "1"])
-        path = eth3d_report.write(self.path("report"), runs, self.path("sets"),
-                                  [scene], ["plain", "tapa"])
-        text = self.read("report", "report.md")
-        self.assertEqual(path, self.path("report", "report.md"))
-        self.assertIn("| COLMAP, TAPA's thresholds | this program | - |", text)
-        self.assertIn("| 2 cm | 50.00 / 50.00 / 50.00 | - |", text)
-        self.assertIn(f"{scene.set_name}: tapa, seed 0: not run", text)
-        self.assertIn("- `plain`: 10 source views --any 1\n", text)
-        self.assertIn("figures/errors.png", text)
+        scene = scenes.all_scenes()[0]
+        self.write_result(scene.set_name, "plain", depth={(0.02, "m"): 0.25}, f1={"fused": 0.5},
+                          options=["--any", "1"])
+        text = self.eth3d_report_of([scene], ["plain", "tapa"])
+        for part in ("| COLMAP, TAPA's thresholds | this program | - |",
+                     "| 2 cm | 50.00 / 50.00 / 50.00 | - |",
+                     f"{scene.set_name}: tapa, seed 0: not run",
+                     "- `plain`: 10 source views --any 1\n", "figures/errors.png"):
+            self.assertIn(part, text)
         self.assertIn("25.0 / 50.0", self.read("report", scene.set_name + ".md"))
         self.assertTrue(os.path.exists(self.path("report/tables/table1.csv")))
 
     def test_eth3d_scenes_with_other_options(self):
-        scenes = eth3d_scenes.all_scenes()[:2]
-        for scene, options in zip(scenes, (["--any", "1"], [])):
-            os.makedirs(self.path("sets", scene.set_name, "images"))
-            write_result(self.path("runs"), scene.set_name, "plain", options=options)
-        eth3d_report.write(self.path("report"), self.path("runs"), self.path("sets"),
-                           scenes, ["plain"])
-        text = self.read("report", "report.md")
-        for scene, words in zip(scenes, (" --any 1", "")):
+        two = scenes.all_scenes()[:2]
+        for scene, options in zip(two, (["--any", "1"], [])):
+            self.write_result(scene.set_name, "plain", options=options)
+        text = self.eth3d_report_of(two, ["plain"])
+        for scene, words in zip(two, (" --any 1", "")):
             self.assertIn(f"- `plain`: 10 source views{words}; **other scenes with other "
                           f"options:** this is {scene.set_name}\n", text)
 
@@ -372,75 +349,72 @@ title = "Second"
 set = "two"
 methods = ["plain"]
 """
+_SMALL = ["--PatchMatchStereo.max_image_size", "9"]
 
 
-class PlanTest(TestCase):
+class PlanTest(ResultsCase):
     def plan_of(self, text=_PLAN):
-        files.write_text(self.path("docs", "plan.toml"), text)
-        return plan.Plan(self.path("docs", "plan.toml"), self.folder, "/none")
+        return plan.Plan(self.write("docs/plan.toml", text), self.folder, "/none")
 
     def test_page(self):
         os.makedirs(self.path("s", "images"))
-        write_result(self.path("out"), "one", "plain", depth={(0.02, "m"): 0.25})
-        made = self.plan_of()
-        self.assertEqual(made.sets["one"].data, self.path("s"))
+        self.write_result("one", "plain", depth={(0.02, "m"): 0.25})
+        page = self.plan_of()
+        self.assertEqual(page.sets["one"].data, self.path("s"))
         # The plan's own page is not touched before every set has results.
-        page, missing = made.write(self.path("out"))
-        self.assertEqual(page, self.path("out", "results.md"))
+        path, missing = page.write(self.out)
+        self.assertEqual(path, self.path("out", "results.md"))
         self.assertEqual(missing, ["- two: plain, seed 0: not run",
                                    "- two: tapa, seed 0: not run"])
         text = self.read("out", "results.md")
-        self.assertIn("# Results\n\nWords.\n\n## First\n\n    scripts/benchmark "
-                      "DATA/s --out OUT/one --methods plain", text)
-        self.assertIn("| COLMAP | 25.0 / 50.0 / 33.3 |", text)
-        self.assertIn("(images/x/one_errors.png)", text)
-        self.assertIn("In between.\n\n## Second\n", text)
-        self.assertIn("*`two` has not been run.*", text)
-        write_result(self.path("out"), "two", "plain", depth={(0.02, "m"): 0.5},
-                     options=["--PatchMatchStereo.max_image_size", "9"])
-        page, missing = made.write(self.path("out"))
-        self.assertEqual(page, self.path("docs", "results.md"))
+        for part in ("# Results\n\nWords.\n\n## First\n\n    scripts/evaluate DATA/s --out "
+                     "OUT/one --methods plain", "| COLMAP | 25.0 / 50.0 / 33.3 |",
+                     "(images/x/one_errors.png)", "In between.\n\n## Second\n",
+                     "*`two` has not been run.*"):
+            self.assertIn(part, text)
+        self.write_result("two", "plain", depth={(0.02, "m"): 0.5}, options=_SMALL)
+        path, missing = page.write(self.out)
+        self.assertEqual(path, self.path("docs", "results.md"))
         self.assertEqual(missing, ["- two: tapa, seed 0: not run"])
         self.assertTrue(os.path.exists(self.path("docs/images/x/one_errors.png")))
 
     def test_a_page_about_some_sets(self):
         os.makedirs(self.path("s", "images"))
-        for name, options in (("one", []), (
-                "two", ["--PatchMatchStereo.max_image_size", "9"])):
-            write_result(self.path("out"), name, "plain", options=options,
-                         depth={(0.02, "m"): 0.25})
-        made = self.plan_of(_PLAN.replace(
+        for name, options in (("one", []), ("two", _SMALL)):
+            self.write_result(name, "plain", options=options, depth={(0.02, "m"): 0.25})
+        page = self.plan_of(_PLAN.replace(
             '"Words."', '"[a](tapa.md#b) [c](http://x/y.md) [d](z.md)"'))
-        page, missing = made.write(self.path("out"), only=["one"])
-        self.assertEqual(page, self.path("out", "results.md"))
-        self.assertEqual(missing, [])
+        path, missing = page.write(self.out, only=["one"])
+        self.assertEqual((path, missing), (self.path("out", "results.md"), []))
         text = self.read("out", "results.md")
-        self.assertIn("[a](../docs/tapa.md#b) [c](http://x/y.md) "
-                      "[d](../docs/z.md)", text)
-        self.assertIn("(images/x/one_errors.png)", text)
-        self.assertIn("## First", text)
-        self.assertNotIn("In between", text)
-        self.assertNotIn("## Second", text)
+        for part in ("[a](../docs/tapa.md#b) [c](http://x/y.md) [d](../docs/z.md)",
+                     "(images/x/one_errors.png)", "## First"):
+            self.assertIn(part, text)
+        for part in ("In between", "## Second"):
+            self.assertNotIn(part, text)
 
     def test_bad_plans(self):
         for old, new, text in (
-                ("page =", "pages =", "has no page"),
+                ("page =", "pages =", "has no key page"),
                 ("title = \"Results\"", "title = Results", "is not TOML"),
-                ("data = \"s\"\nmethods", "methods", "sets.one has no data"),
-                ("tolerances", "tolerance", "unknown key tolerance;"),
-                ("set = \"two\"", "set = \"three\"", "set three, which is not"),
-                ("\"errors\"]", "\"error\"]", "shows error; there are depth"),
-                ("[sets.one]", "[sets.\"../one\"]", "its name of letters"),
-                ("[sets.one]", "sets.x = 1\n[sets.one]", "sets.x must be a table"),
-                ("[sets.one]", "every = 1\n[sets.one]", "the page has an unknown key"),
-                ("[\"plain\"]\ntol", "\"plain\"\ntol", "methods of sets.one must be a list"),
-                ("[\"plain\"]\ntol", "[\"plane\"]\ntol", "sets.one has an unknown method"),
-                ("[0.02]", "[-0.02]", "tolerances of sets.one must be a list of pos"),
-                ("data = \"s\"\nopt", "data = \"s\"\nevery = 0\nopt", "every of sets.two"),
-                ("data = \"s\"\nopt", "data = \"s\"\nseeds = 0\nopt", "seeds of sets.two"),
-                ("\"In between.\"", "3", "text of a section must be a text"),
-                ("\"Second\"", "\"x\"\nlevel = true", "level of a section")):
-            with self.assertRaisesRegex(Failure, text):
+                ("data = \"s\"\nmethods", "methods", "sets.one has no key data"),
+                ("tolerances", "tolerance", "sets.one has an unknown key tolerance"),
+                ("set = \"two\"", "set = \"three\"", "section.2: .* set three, which is not"),
+                ("\"errors\"]", "\"error\"]", "show.1: there is no error; there are depth"),
+                ("[sets.one]", "[sets.\"../one\"]", "sets: the name ../one must be of letters"),
+                ("[sets.one]", "sets.x = 1\n[sets.one]", "sets.x: value is not a valid dict"),
+                ("[sets.one]", "every = 1\n[sets.one]", "it has an unknown key every"),
+                ("[\"plain\"]\ntol", "\"plain\"\ntol", "sets.one.methods: .* not a valid list"),
+                ("[\"plain\"]\ntol", "[\"plane\"]\ntol",
+                 "sets.one.methods.0: there is no method plane; there are plain"),
+                ("[0.02]", "[-0.02]", "sets.one.tolerances.0: value is not positive"),
+                ("[0.02]", "[]", "sets.one.tolerances: ensure .* at least 1 item"),
+                ("data = \"s\"\nopt", "data = \"s\"\nevery = 0\nopt", "sets.two.every: ensure"),
+                ("data = \"s\"\nopt", "data = \"s\"\nseeds = 0\nopt",
+                 "sets.two.seeds: value is not a valid list"),
+                ("\"In between.\"", "3", "section.1.text: str type expected"),
+                ("\"Second\"", "\"x\"\nlevel = true", "section.2.level: .* integer")):
+            with self.assertRaisesRegex(Failure, f"^{self.path('docs/plan.toml')} .*{text}"):
                 self.plan_of(_PLAN.replace(old, new))
         files.write_bytes(self.path("latin.toml"), b'title = "\xe9"')
         with self.assertRaisesRegex(Failure, "latin.toml is not TOML"):
@@ -449,11 +423,10 @@ class PlanTest(TestCase):
             plan.Plan(self.path("none.toml"), self.folder, "/none")
 
     def test_the_project_s_own(self):
-        made = plan.Plan(os.path.join(_ROOT, "docs", "results_plan.toml"), None,
-                         _ROOT)
-        self.assertEqual(made.sets["room"].views, ["room_05.jpg"])
-        for one in made.sets.values():
-            self.assertLessEqual(set(one.methods), set(METHODS))
+        page = plan.Plan(os.path.join(ROOT, "docs", "results_plan.toml"), None, ROOT)
+        self.assertEqual(page.sets["room"].views, ["room_05.jpg"])
+        for planned in page.sets.values():
+            self.assertLessEqual(set(planned.methods), set(METHODS))
 
 
 if __name__ == "__main__":

@@ -1,0 +1,122 @@
+"""Files that appear under their name only when they are complete."""
+
+import contextlib
+import fcntl
+import json
+import os
+import zlib
+
+from . import schemas
+from .processes import Failure
+
+
+@contextlib.contextmanager
+def replacing(path):
+    """Gives a name to write to, which becomes path unless something fails."""
+    new = path + ".new"
+    try:
+        os.makedirs(os.path.dirname(path) or ".", exist_ok=True)
+        try:
+            yield new
+            os.replace(new, path)
+        finally:
+            if os.path.lexists(new):
+                os.remove(new)
+    except OSError as error:
+        raise Failure(f"{path} cannot be written: {error.strerror}") from error
+
+
+def write_bytes(path, *parts):
+    """Writes the parts one after the other. Raises Failure if it cannot."""
+    with replacing(path) as new, open(new, "wb") as file:
+        for part in parts:
+            file.write(part)
+
+
+def write_text(path, text):
+    write_bytes(path, text.encode("utf-8", errors="surrogateescape"))
+
+
+def write_json(path, value):
+    """value: plain data or a model."""
+    if isinstance(value, schemas.Model):
+        value = value.dict()
+    write_text(path, json.dumps(value, indent=2, ensure_ascii=False) + "\n")
+
+
+def read_json(path, model=None):
+    """The content of a file as a model (schemas.py) or plain; None where there is none.
+
+    Raises Failure if it cannot be read or is not of the model.
+    """
+    try:
+        with open(path, encoding="utf-8") as file:
+            content = json.load(file)
+    except (FileNotFoundError, NotADirectoryError):
+        return None
+    except (OSError, ValueError) as error:
+        raise Failure(f"{path} cannot be read ({error}); remove it to make it anew") from error
+    return content if model is None else schemas.check(content, model, path)
+
+
+def lock(folder, name):
+    """Keeps other processes of a name out of a folder, by FOLDER/.NAME.lock.
+
+    Until the file that is returned is closed, or this process ends in any way.
+    Raises Failure if another process is at work there.
+    """
+    try:
+        os.makedirs(folder, exist_ok=True)
+        file = open(os.path.join(folder, f".{name}.lock"), "wb")
+    except OSError as error:
+        raise Failure(f"{folder} cannot be written: {error.strerror}") from error
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError as error:
+        file.close()
+        raise Failure(f"another {name} is at work in {folder}; wait until it ends, or name "
+                      "another folder") from error
+    return file
+
+
+def fingerprint(*paths):
+    """Text that changes with the files at these paths, or in these folders.
+
+    "" if there are none. It is made of names, sizes and samples of the content:
+    all of a file of gigabytes would take too long, and times are lost in copies.
+    """
+    known = 0
+    for path in paths:
+        for name in _files_in(path):
+            known = zlib.crc32(_sample(path, name), known)
+    return f"{known:08x}" if known else ""
+
+
+def is_newer(path, *sources):
+    """Whether a file exists and is newer than its sources; "" is none."""
+    return os.path.exists(path) and all(
+        not source or os.path.getmtime(source) < os.path.getmtime(path) for source in sources)
+
+
+def names_below(folder):
+    """Names of the files in a folder and below, relative to it, in order."""
+    return sorted((os.path.relpath(os.path.join(parent, name), folder)
+                   for parent, _, names in os.walk(folder, followlinks=True)
+                   for name in names), key=os.fsencode)
+
+
+def _files_in(path):
+    return [""] if os.path.isfile(path) else names_below(path)
+
+
+def _sample(path, name, count=8, block=4096):
+    path = os.path.join(path, name) if name else path
+    if not os.path.exists(path):  # A link to nothing.
+        return b""
+    with open(path, "rb") as file:
+        size = file.seek(0, os.SEEK_END)
+        parts = [os.fsencode(name), str(size).encode()]
+        for i in range(count):
+            file.seek(max(0, size - block) * i // (count - 1))
+            parts.append(file.read(block))
+    return b"\n".join(parts)

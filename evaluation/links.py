@@ -1,0 +1,60 @@
+"""Workspaces of links: some maps of a workspace, or those of another tool."""
+
+import os
+
+from . import files
+from .processes import Failure
+
+_KINDS = (".geometric", ".photometric", "")
+
+
+def photographs(data, every=1):
+    """Names of the photographs that take part, as in make_workspace.sh."""
+    return files.names_below(os.path.join(data, "images"))[::every]
+
+
+def link(source, target):
+    """Makes a link, in place of what was there."""
+    os.makedirs(os.path.dirname(target), exist_ok=True)
+    if os.path.lexists(target):
+        os.remove(target)
+    os.symlink(os.path.abspath(source), target)
+
+
+def _map_folder(path):
+    """The folder of depth maps in a workspace, or the folder itself."""
+    inside = os.path.join(path, "stereo", "depth_maps")
+    return inside if os.path.isdir(inside) else path
+
+
+def _find_kind(path, names):
+    """Which maps there are of photographs, None for none."""
+    return next((kind for kind in _KINDS for name in names
+                 if os.path.exists(os.path.join(_map_folder(path), f"{name}{kind}.bin"))), None)
+
+
+def find_map(path, name):
+    """Path of a photograph's map in a workspace or folder of maps, "" if none."""
+    kind = _find_kind(path, [name])
+    return "" if kind is None else os.path.join(_map_folder(path), f"{name}{kind}.bin")
+
+
+def make_view_workspace(data, maps, folder, names):
+    """Links the photographs of data and the maps of these names into folder.
+
+    maps: a COLMAP workspace, or a folder of depth maps. What they are called,
+    they become geometric ones. Raises Failure if there are none.
+    """
+    kind = _find_kind(maps, names)
+    if kind is None:
+        name = names[0] if names else "PHOTOGRAPH"
+        raise Failure(f"{maps} has no depth map of {name}: it should be called "
+                      f"{name}.geometric.bin")
+    depth_maps = _map_folder(maps)
+    normal_maps = os.path.join(os.path.dirname(depth_maps), "normal_maps")
+    for name in names:
+        for source, target in ((depth_maps, "depth_maps"), (normal_maps, "normal_maps")):
+            path = os.path.join(source, f"{name}{kind}.bin")
+            if os.path.exists(path):
+                link(path, os.path.join(folder, "stereo", target, f"{name}.geometric.bin"))
+        link(os.path.join(data, "images", name), os.path.join(folder, "images", name))
