@@ -22,9 +22,10 @@ namespace mvs {
 
 void PatchMatchOptions::Print() const {
   PrintHeading2("PatchMatchOptions");
-  tapa::VisitOptions(*this, [](const std::string& name, const auto& value) {
-    std::cout << name << ": " << value << std::endl;
-  });
+  tapa::VisitOptions(
+      *this, [](const tapa::OptionEntry& entry, const auto* value) {
+        std::cout << entry.name << ": " << *value << std::endl;
+      });
 }
 
 PatchMatchController::PatchMatchController(const PatchMatchOptions& options,

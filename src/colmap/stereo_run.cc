@@ -354,7 +354,7 @@ bool StereoRun::WritesGraph(Pass pass) const {
 }
 
 bool StereoRun::WritesPictures(Pass pass) const {
-  return options_.tapa && !options_.tapa_debug.empty() &&
+  return options_.tapa.enabled && !options_.tapa_debug.empty() &&
          pass == FinalPass(options_);
 }
 

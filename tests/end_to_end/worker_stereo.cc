@@ -21,7 +21,7 @@ int main(int argc, char** argv) {
   options.num_iterations = 1;
   options.window_radius = 3;
   options.num_threads = 1;
-  options.tapa = true;
+  options.tapa.enabled = true;
   options.write_consistency_graph = true;
   tapa::WorkspaceLocation location;
   location.path = argv[1];
