@@ -63,7 +63,7 @@ PatchMatchOptions PassOptions(PatchMatchOptions options, Pass pass) {
   return options;
 }
 
-uint64_t ViewSeed(uint64_t seed, const std::string& image_name, bool geometric) {
+uint64_t ViewSeed(uint64_t seed, const std::string& image_name, Pass pass) {
   // FNV-1a.
   uint64_t hash = 0xcbf29ce484222325u;
   const auto add = [&hash](uint8_t byte) {
@@ -72,7 +72,7 @@ uint64_t ViewSeed(uint64_t seed, const std::string& image_name, bool geometric) 
   for (int shift = 0; shift < 64; shift += 8) {
     add(static_cast<uint8_t>(seed >> shift));
   }
-  add(geometric);
+  add(static_cast<uint8_t>(pass));
   for (const char c : image_name) {
     add(static_cast<uint8_t>(c));
   }

@@ -170,13 +170,14 @@ TEST(ViewSeed, DependsOnAllItIsGiven) {
   std::set<uint64_t> seeds;
   for (const uint64_t seed : {0, 1}) {
     for (const char* name : {"a.jpg", "b.jpg", "ab.jpg"}) {
-      for (const bool geometric : {false, true}) {
-        seeds.insert(ViewSeed(seed, name, geometric));
+      for (const Pass pass : {Pass::kPhotometric, Pass::kGeometric}) {
+        seeds.insert(ViewSeed(seed, name, pass));
       }
     }
   }
   EXPECT_EQ(seeds.size(), 12);
-  EXPECT_EQ(ViewSeed(1, "a.jpg", true), ViewSeed(1, "a.jpg", true));
+  EXPECT_EQ(ViewSeed(1, "a.jpg", Pass::kGeometric),
+            ViewSeed(1, "a.jpg", Pass::kGeometric));
 }
 
 TEST(HostOptions, TableListsEveryOptionOnce) {
