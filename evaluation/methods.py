@@ -2,8 +2,11 @@
 
 from .processes import number_text
 
+# What COLMAP takes, and so the paper; in the program colmap_defaults says the same.
+_COLMAP = ["--PatchMatchStereo.num_iterations", "5",
+           "--PatchMatchStereo.num_samples", "15"]
 _TAPA = ["--PatchMatchStereo.tapa", "1"]
-_PAPER = _TAPA + ["--PatchMatchStereo.tapa_completion", "0",
+_PAPER = _COLMAP + _TAPA + ["--PatchMatchStereo.tapa_completion", "0",
                   "--PatchMatchStereo.tapa_min_textureness", "0.5"]
 
 
@@ -11,11 +14,22 @@ def _without(part):
     return ["--PatchMatchStereo.tapa_" + part, "0"]
 
 
-# Options of patch_match_stereo by name. tapa is what this program does, paper
-# what the paper describes; the others leave a part out.
+_MORE_ITERATIONS = ["--PatchMatchStereo.num_iterations", "3",
+                    "--PatchMatchStereo.num_geom_iterations", "2"]
+_SPARSE_WINDOW = ["--PatchMatchStereo.window_step", "2"]
+
+# Options of patch_match_stereo by name. plain and tapa are what this program does,
+# colmap and paper what COLMAP does and what the paper describes; the others leave a
+# part out, or take more or less time.
 METHODS = {
     "plain": [],
     "tapa": _TAPA,
+    "colmap": _COLMAP,
+    "colmap-tapa": _COLMAP + _TAPA,
+    "plain-3+2": _MORE_ITERATIONS,
+    "tapa-3+2": _TAPA + _MORE_ITERATIONS,
+    "plain-sparse": _SPARSE_WINDOW,
+    "tapa-sparse": _TAPA + _SPARSE_WINDOW,
     "tapa-weights": _TAPA + _without("texture_weighting"),
     "tapa-coarse": _TAPA + _without("coarse_superpixels"),
     "tapa-fine": _TAPA + _without("fine_superpixels"),
@@ -29,8 +43,14 @@ METHODS = {
 
 # What a reader sees.
 LABELS = {
-    "plain": "COLMAP",
+    "plain": "plain",
     "tapa": "TAPA",
+    "colmap": "COLMAP",
+    "colmap-tapa": "TAPA, 5 + 5 iterations, 15 samples",
+    "plain-3+2": "plain, 3 + 2 iterations",
+    "tapa-3+2": "TAPA, 3 + 2 iterations",
+    "plain-sparse": "plain, window step 2",
+    "tapa-sparse": "TAPA, window step 2",
     "tapa-weights": "TAPA without weights",
     "tapa-coarse": "TAPA without coarse superpixels",
     "tapa-fine": "TAPA without fine superpixels",
@@ -44,9 +64,9 @@ LABELS = {
 
 # The columns of the paper's Table 2: with the paper's own method, and with what
 # this program does.
-ABLATION = ["plain", "paper-weights", "paper-coarse", "paper-fine",
+ABLATION = ["colmap", "paper-weights", "paper-coarse", "paper-fine",
             "paper-refinement", "paper"]
-TAPA_ABLATION = [name.replace("paper", "tapa") for name in ABLATION]
+TAPA_ABLATION = ["plain", *(name.replace("paper", "tapa") for name in ABLATION[1:])]
 
 
 def fusion_options(reprojection_error, normal_error=20):

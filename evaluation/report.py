@@ -16,9 +16,10 @@ GLOSSARY = """\
   does it.
 - **Textureness** is 0.5 where a photograph is flat and tends to 1 where it has much
   texture. **Low texture**: below 0.75.
-- **COLMAP** is COLMAP's own algorithm (method `plain`), **TAPA** is
-  `--PatchMatchStereo.tapa 1` (`tapa`), **paper's TAPA** is TAPA without completion, as
-  the paper describes it (`paper`).
+- **Plain** is COLMAP's own algorithm (method `plain`), **COLMAP** the same with COLMAP's
+  numbers of iterations and samples (`colmap`), **TAPA** is `--PatchMatchStereo.tapa 1`
+  (`tapa`), **paper's TAPA** is TAPA without completion and with COLMAP's numbers, as the
+  paper describes it (`paper`).
 - "-" is what nobody has run or what cannot be measured. It is not zero.
 """
 
@@ -60,6 +61,13 @@ class SetReport:
             return ""
         return self._table(name, tables.depth_table(
             self.by_method, self._methods, self.experiment.shown_tolerances(), bound))
+
+    def trade(self):
+        """Against what COLMAP's own numbers of iterations and samples cost and score."""
+        if not any(run.depth for run in self.by_method.get("colmap", [])):
+            return ""
+        return self._table("trade", tables.trade_table(
+            self.by_method, self._methods, self.experiment.shown_tolerances()))
 
     def cost(self):
         return self._table("cost", tables.cost_table(self.by_method, self._methods))
@@ -194,7 +202,7 @@ def link_to(path, folder):
 
 
 BLOCKS = {name: getattr(SetReport, name) for name in (
-    "depth", "low_texture", "cost", "clouds", "ablation", "errors", "textureness", "pictures")}
+    "depth", "low_texture", "cost", "trade", "clouds", "ablation", "errors", "textureness", "pictures")}
 
 
 def _machine_text(machine):

@@ -30,8 +30,14 @@ def size_options(image_size):
 
 
 def all_options(method, seed, options):
-    """Options of patch_match_stereo with those of the method and the seed."""
-    return ["--PatchMatchStereo.seed", str(seed), *METHODS[method], *options]
+    """Options of patch_match_stereo with those of the method and the seed.
+
+    Those given in options take the place of the method's.
+    """
+    given = {word.partition("=")[0] for word in options}
+    own = ["--PatchMatchStereo.seed", str(seed), *METHODS[method]]
+    return [word for name, value in zip(own[::2], own[1::2]) if name not in given
+            for word in (name, value)] + list(options)
 
 
 def is_record_of(content, options, sources, every):

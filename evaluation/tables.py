@@ -131,3 +131,35 @@ def cost_table(by_method, methods):
         ["method", *headings],
         [[label(method), *row[3]] for method, row in zip(methods, rows)],
         ["method", *names], [[method, *row[2]] for method, row in zip(methods, rows)])
+
+
+def _trade_values(by_method, method, tolerances):
+    """CPU seconds and their share of COLMAP's, F1 at each tolerance and its mean, and
+    the mean where there is little texture; None where it is not known."""
+    def f1(bound=None):
+        scores = [results.depth_score(by_method.get(method), *pair, bound)
+                  for pair in tolerances]
+        return [score and score.f1 for score in scores]
+
+    cost, of_colmap = (results.cpu_per_megapixel(by_method.get(name, []))
+                       for name in (method, "colmap"))
+    share = cost / of_colmap if cost is not None and of_colmap else None
+    scores, low = f1(), f1(depth_scores.LOW_TEXTURE)
+    means = [None if None in values else results.mean(values) for values in (scores, low)]
+    return [cost, share, *scores, *means]
+
+
+def trade_table(by_method, methods, tolerances):
+    """What a method costs beside what it scores; tolerances: (value, unit)."""
+    rows = [_trade_values(by_method, method, tolerances) for method in methods]
+    columns = [tolerance_text(*pair) for pair in tolerances]
+    return Table(
+        "**Cost and score.** CPU seconds per megapixel and view for both passes, and their "
+        "share of COLMAP's; F1 of the depth maps in per cent, its mean over the tolerances, "
+        "and that mean over the pixels of low texture.",
+        ["method", "CPU s / MP", "of COLMAP's", *columns, "mean", "low texture"],
+        [[label(method), number(row[0]), number(row[1], 2), *map(percent, row[2:])]
+         for method, row in zip(methods, rows)],
+        ["method", "cpu_seconds_per_megapixel", "share_of_colmap", *columns, "mean_f1",
+         "low_texture_mean_f1"],
+        [[method, *row] for method, row in zip(methods, rows)])

@@ -27,7 +27,7 @@ from . import download as archives, prepare as sets, scenes, submit as submissio
 from .miniature import MakeMiniature
 from .report import Eth3dReport
 
-DEFAULT_METHODS = ["plain", "tapa", *methods.ABLATION[1:]]
+DEFAULT_METHODS = ["tapa", *methods.ABLATION]
 # Metres, as ETH3D's unit (paper, section 4.1). COLMAP's algorithm fits no planes.
 PLANE_OPTIONS = ["--PatchMatchStereo.tapa_plane_distance", "0.1"]
 
@@ -94,7 +94,7 @@ def _run_of(arguments, scene, method, seed, size):
         folder=_path(arguments, "runs", _size_name(size), scene.set_name,
                      stereo_run.folder_name(method, seed)),
         seed=seed, fusions={"fused": scene.track.fusion, "fused_default": []},
-        options=[*stereo_run.size_options(size), *([] if method == "plain" else PLANE_OPTIONS),
+        options=[*stereo_run.size_options(size), *([] if method in ("plain", "colmap") else PLANE_OPTIONS),
                  *arguments.options],
         sources=arguments.sources)
 

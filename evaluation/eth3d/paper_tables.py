@@ -16,8 +16,8 @@ def table1(groups):
     text, data = [], []
     for name, method, cloud in ((label("tapa"), "tapa", "fused"),
                                 (label("paper"), "paper", "fused"),
-                                ("COLMAP, TAPA's thresholds", "plain", "fused"),
-                                ("COLMAP, its own thresholds", "plain", "fused_default")):
+                                ("COLMAP, TAPA's thresholds", "colmap", "fused"),
+                                ("COLMAP, its own thresholds", "colmap", "fused_default")):
         scores = [results.mean_over_sets(groups.get(group, []), method, 0.02, cloud)
                   for group in published.GROUPS]
         cells = [score and score.f1 for score in scores]

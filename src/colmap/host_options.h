@@ -51,7 +51,7 @@ void VisitHostOptions(Options* options, const Visitor& visit) {
          OptionRange::From(1, 1000).OrMinusOne("num_iterations, as that has"));
   option("colmap_defaults", &o.colmap_defaults, false,
          "Take COLMAP's own num_iterations (5 in both passes) and num_samples "
-         "(15), whatever is given here; they cost two and a half times as "
+         "(15), whatever is given here; they cost more than twice as "
          "much (docs/results.md)");
   VisitTapaOptions(&o.tapa, visit);
   option("tapa_debug", &o.tapa_debug, false,

@@ -138,7 +138,8 @@ void VisitTapaOptions(Options* options, const Visitor& visit) {
 
 // Parameters of one depth map estimation. The defaults are COLMAP's
 // (Schoenberger et al., "Pixelwise View Selection for Unstructured Multi-View
-// Stereo", ECCV 2016). Angles are in degrees.
+// Stereo", ECCV 2016), but for fewer samples (15 there) and iterations (5).
+// Angles are in degrees.
 struct Options {
   // Half size of the correlation window, in pixels: the window has
   // 2 * window_radius + 1 rows and columns.
@@ -152,7 +153,7 @@ struct Options {
   double sigma_color = 0.2;
 
   // Number of source views drawn with replacement per pixel and sweep.
-  int num_samples = 15;
+  int num_samples = 8;
   // Spread of the likelihood of a view's cost (1 - NCC).
   double ncc_sigma = 0.6;
   // Triangulation angle below which a view's prior falls off, in degrees.
@@ -161,7 +162,7 @@ struct Options {
   double incident_angle_sigma = 0.9;
 
   // Number of iterations of four sweeps each.
-  int num_iterations = 5;
+  int num_iterations = 2;
 
   // Geometric pass: start from the given maps and add the geometric term.
   bool geom_consistency = true;

@@ -25,7 +25,7 @@ BIN_DIR = os.path.dirname(os.path.abspath(tiny.COLMAP))
 # Enough for points that can be scored, and fast.
 FAST = ["--image_sizes", "144", "--", "--PatchMatchStereo.num_iterations", "2",
         "--PatchMatchStereo.window_radius", "3", "--PatchMatchStereo.num_samples", "6"]
-METHODS = ["--methods", "plain,tapa"]
+METHODS = ["--methods", "colmap,tapa"]
 SEVEN_ZIP = next((name for name in ("7z", "7zz", "7za") if shutil.which(name)), None)
 
 
@@ -439,7 +439,7 @@ class Pipeline(Case):
 
     def test_1_runs_are_complete_and_recorded(self):
         for name, error in (("office_dslr", "1"), ("office_rig", "0.5")):
-            for method in ("plain", "tapa"):
+            for method in ("colmap", "tapa"):
                 record = self.read_json(self.run_path(name, method, "record.json"))
                 self.assertEqual((record["set"], record["method"]), (name, method))
                 self.assertEqual(record["views"], 4)
@@ -456,10 +456,10 @@ class Pipeline(Case):
         self.assertGreater(self.points(self.run_path("office_dslr", "tapa", "fused.ply")), 100)
 
     def test_2_resumes(self):
-        maps = self.run_path("office_dslr", "plain", "stereo", "depth_maps",
+        maps = self.run_path("office_dslr", "colmap", "stereo", "depth_maps",
                              "dslr_images_undistorted", "DSC_0101.JPG.geometric.bin")
         before = os.stat(maps).st_mtime_ns
-        cloud = self.run_path("office_dslr", "plain", "fused.ply")
+        cloud = self.run_path("office_dslr", "colmap", "fused.ply")
         os.remove(cloud)
         result = run_script(*self.commands[-1][:3], "--dry_run", *METHODS, *FAST)
         self.assertEqual(len(result.stdout.splitlines()), 1, result.stdout)
@@ -488,7 +488,7 @@ class Pipeline(Case):
         self.assertIn("--tolerances 0.01,0.02,0.05,0.1,0.2,0.5", calls[0])
         self.assertIn("scans/scan_alignment.mlp", calls[0])
         for name in ("office_dslr", "office_rig"):
-            for method in ("plain", "tapa"):
+            for method in ("colmap", "tapa"):
                 path = self.run_path(name, method, "cloud_scores.json")
                 scores = self.read_json(path)
                 self.assertEqual(scores["fused_default"]["f1"][1], 0.25)
@@ -499,7 +499,7 @@ class Pipeline(Case):
 
     def test_4_scores(self):
         self.assert_done(self.eth3d("evaluate", *METHODS))
-        for method in ("plain", "tapa"):
+        for method in ("colmap", "tapa"):
             scores = self.read_json(self.run_path("office_dslr", method, "cloud_scores.json"))
             for name in ("fused", "fused_default"):
                 f1 = scores[name]["f1"]
@@ -587,9 +587,9 @@ class Pipeline(Case):
         rows = self.read_csv(os.path.join(folder, "tables", "table2_paper_fused.csv"))
         own = {(row["method"], float(row["tolerance"])): row for row in rows
                if row["figures"] == "own"}
-        scores = self.read_json(self.run_path("office_dslr", "plain", "cloud_scores.json"))
+        scores = self.read_json(self.run_path("office_dslr", "colmap", "cloud_scores.json"))
         for i, tolerance in enumerate(scores["fused"]["tolerances"]):
-            self.assertAlmostEqual(float(own["plain", tolerance]["f1"]),
+            self.assertAlmostEqual(float(own["colmap", tolerance]["f1"]),
                                    scores["fused"]["f1"][i])
         self.assertEqual(own["paper", 0.02]["f1"], "")
 
@@ -605,14 +605,14 @@ class Pipeline(Case):
         with open(photograph, "wb") as file:
             file.write(b"no photograph")
         self.assert_done(run_script("eth3d", "prepare", self.folder, "--scenes", "broken"))
-        shutil.rmtree(self.run_path("office_dslr", "plain"))
-        result = run_script("eth3d", "run", self.folder, "--methods", "plain", *FAST)
+        shutil.rmtree(self.run_path("office_dslr", "colmap"))
+        result = run_script("eth3d", "run", self.folder, "--methods", "colmap", *FAST)
         self.assert_failed(result, "1 of 2 failed", "144/broken_dslr/plain-0")
         # "broken" comes first in the alphabet.
-        self.assertTrue(os.path.exists(self.run_path("office_dslr", "plain", "fused.ply")))
-        record = self.read_json(self.run_path("broken_dslr", "plain", "record.json"))
+        self.assertTrue(os.path.exists(self.run_path("office_dslr", "colmap", "fused.ply")))
+        record = self.read_json(self.run_path("broken_dslr", "colmap", "record.json"))
         self.assertIsNotNone(record["failed"])
-        result = self.eth3d("evaluate", "--methods", "plain", "--scenes", "broken")
+        result = self.eth3d("evaluate", "--methods", "colmap", "--scenes", "broken")
         self.assert_failed(result, "it is not complete", "scripts/eth3d run")
         shutil.rmtree(self.path("sets", "broken_dslr"))
 
@@ -629,23 +629,23 @@ class Pipeline(Case):
 
     def test_9_stops_and_goes_on(self):
         # Long enough to be stopped.
-        slow = ["--seeds", "5", "--methods", "plain", "--resolution", "both", "--image_sizes",
+        slow = ["--seeds", "5", "--methods", "colmap", "--resolution", "both", "--image_sizes",
                 "144", "--", "--PatchMatchStereo.num_iterations", "60"]
         process = subprocess.Popen(
             [os.path.join(SCRIPTS, "eth3d"), "run", self.folder, *slow], text=True,
             stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
             env=dict(os.environ, TAPA_BIN_DIR=BIN_DIR))
         self.assertIn("stereo ...", process.stderr.readline())
-        other = self.eth3d("run", "--methods", "plain")
+        other = self.eth3d("run", "--methods", "colmap")
         self.assert_failed(other, f"another eth3d-run is at work in {self.folder};")
-        self.assert_done(self.eth3d("run", "--methods", "plain", "--dry_run", fast=FAST))
+        self.assert_done(self.eth3d("run", "--methods", "colmap", "--dry_run", fast=FAST))
         time.sleep(0.5)
         process.send_signal(signal.SIGINT)
         _, errors = process.communicate(timeout=120)
         self.assertEqual(process.returncode, 130, errors)
         self.assertIn("ERROR: stopped; the same command goes on from here", errors)
         # Nothing else was begun.
-        self.assertFalse(os.path.exists(self.run_path("office_rig", "plain").replace("-0", "-5")))
+        self.assertFalse(os.path.exists(self.run_path("office_rig", "colmap").replace("-0", "-5")))
 
     def test_9_other_options_are_not_mixed(self):
         result = run_script("eth3d", "run", self.folder, "--methods", "tapa", "--scenes",

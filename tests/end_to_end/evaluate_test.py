@@ -159,7 +159,7 @@ class BenchmarkTest(tiny.TestCase):
         self.assertIn("- room: tapa, seed 0: stereo: patch_match_stereo: no luck",
                       text)
         self.assertRegex(text, r"\| TAPA \| - \| - \|")
-        self.assertRegex(text, r"\| COLMAP \| \d+\.\d / ")
+        self.assertRegex(text, r"\| plain \| \d+\.\d / ")
         # What failed is tried again.
         result = self.room("--methods", "tapa,plain", "--no_clouds")
         self.assertEqual(result.returncode, 0, result.stderr)
@@ -214,7 +214,7 @@ class BenchmarkTest(tiny.TestCase):
         self.assertIsNone(record["seconds"]["stereo"])
         self.assertGreater(record["seconds"]["fused"], 0)
         self.assertRegex(self.read("out/report.md"),
-                         r"\| COLMAP \| 1 \| 3 \| 144x96 .*\| - \| - \| - \|\n")
+                         r"\| plain \| 1 \| 3 \| 144x96 .*\| - \| - \| - \|\n")
 
     def test_other_options_are_refused(self):
         self.room("--methods", "plain", "--no_clouds")
@@ -281,7 +281,7 @@ set = "absent"
         self.assertIn("SKIPPED: absent: there is no", result.stderr)
         self.assertIn("- absent: plain, seed 0: not run", result.stdout)
         text = self.read("out/page.md")
-        self.assertRegex(text, r"\| COLMAP \| \d+\.\d / ")
+        self.assertRegex(text, r"\| plain \| \d+\.\d / ")
         self.assertIn("*`absent` has not been run.*", text)
         self.assertTrue(os.path.exists(self.path("out/images/small_errors.png")))
         only = self.run_script(*arguments, "--only", "small", "--report_only")

@@ -15,6 +15,8 @@ from evaluation.experiment import Experiment
 from evaluation.methods import LABELS, METHODS, TAPA_ABLATION
 from evaluation.processes import Failure
 
+COLMAP_OPTIONS = " ".join(METHODS["colmap"])
+
 
 def depth_part(shares):
     """shares: completeness by (tolerance, unit); accuracy is twice that."""
@@ -126,7 +128,7 @@ class TablesTest(ResultsCase):
         columns = [(0.02, "m"), (1, "%")]
         table = tables.depth_table(self.load(), ["plain", "tapa"], columns)
         self.assertEqual(table.header, ["method", "2 cm", "1 %"])
-        self.assertEqual(table.rows, [["COLMAP", "25.0 / 50.0 / 33.3", "50.0 / 100.0 / 66.7"],
+        self.assertEqual(table.rows, [["plain", "25.0 / 50.0 / 33.3", "50.0 / 100.0 / 66.7"],
                                       ["TAPA", "-", "-"]])
         self.assertIn("| TAPA | - | - |\n", table.markdown())
         rows = list(csv.reader(io.StringIO(table.csv())))
@@ -145,7 +147,7 @@ class TablesTest(ResultsCase):
                           peak_memory_bytes=unknown)
         table = tables.cost_table(self.load(), ["plain", "tapa", "x"])
         self.assertEqual(table.rows, [
-            ["COLMAP", "1", "4", "500x500", "50.0", "62.5", "-", "12.3", "0.40", "120", "70",
+            ["plain", "1", "4", "500x500", "50.0", "62.5", "-", "12.3", "0.40", "120", "70",
              "300"],
             ["TAPA", "1", "4", "500x500"] + ["-"] * 8,
             ["x", "0"] + ["-"] * 10])
@@ -153,6 +155,21 @@ class TablesTest(ResultsCase):
             "method,runs,views,size,coverage,measurement_coverage,low_texture_coverage,"
             "median_absolute_error,median_relative_error,cpu_seconds_per_megapixel,"
             "stereo_seconds,peak_memory_bytes", "x,0" + "," * 10])
+
+    def test_trade_table(self):
+        self.write_result("s", "colmap", depth={(0.02, "m"): 0.25}, low={0.75: {(0.02, "m"): 0.5}})
+        self.write_result("s", "plain", depth={(0.02, "m"): 0.5, (0.05, "m"): 0.5},
+                          cpu_seconds={"stereo": 30.})
+        table = tables.trade_table(self.load(), ["colmap", "plain", "x"], [(0.02, "m")])
+        self.assertEqual(table.header[3:], ["2 cm", "mean", "low texture"])
+        self.assertEqual(table.rows, [
+            ["COLMAP", "120", "1.00", "33.3", "33.3", "66.7"],
+            ["plain", "30", "0.25", "66.7", "66.7", "-"],
+            ["x"] + ["-"] * 5])
+        # A mean over fewer tolerances would be another thing.
+        table = tables.trade_table(self.load(), ["colmap", "plain"],
+                                   [(0.02, "m"), (0.05, "m")])
+        self.assertEqual([row[5] for row in table.rows], ["-", "66.7"])
 
     def test_published_figures_agree_with_each_other(self):
         # The overall mean is over 5 scenes of low and 13 or 12 of high resolution.
@@ -163,7 +180,7 @@ class TablesTest(ResultsCase):
                     mean -= 0.3  # The paper has 47.48.
                 self.assertAlmostEqual(cells[first], mean, delta=0.011)
         at_2_cm = published.TABLE2_TOLERANCES.index(0.02)
-        for ours, theirs in (("paper", "TAPA-MVS"), ("plain", "COLMAP")):
+        for ours, theirs in (("paper", "TAPA-MVS"), ("colmap", "COLMAP")):
             self.assertEqual(published.TABLE2[ours][at_2_cm][2], published.TABLE1[theirs][2])
         for column in published.TABLE2.values():
             self.assertEqual(len(column), 6)
@@ -193,7 +210,7 @@ class TablesTest(ResultsCase):
         self.write_result("s", "tapa", f1={"fused": 0.5})
         table = paper_tables.table2([self.load()], TAPA_ABLATION, with_published=True)
         self.assertEqual(len(table.rows), 12)
-        self.assertEqual(table.header[1], "COLMAP")
+        self.assertEqual(table.header[1], "plain")
         self.assertEqual(table.rows[1], ["2 cm", "25.00 / 25.00 / 25.00", "-", "-", "-", "-",
                                          "50.00 / 50.00 / 50.00"])
         self.assertEqual(table.rows[2], ["5 cm"] + ["-"] * 6)
@@ -254,10 +271,10 @@ class ReportTest(ResultsCase):
         self.write_result("s", "tapa", failed={"step": "stereo", "message": "it broke"})
         text = self.report_of(tolerances=[0.02], methods=["plain", "tapa", "paper"],
                               failures=[("x", "it broke"), ("y", "oh")])
-        for part in ("| COLMAP | 25.0 / 50.0 / 33.3 | - |", "| paper's TAPA | - | - |",
+        for part in ("| plain | 25.0 / 50.0 / 33.3 | - |", "| paper's TAPA | - | - |",
                      "- s: tapa, seed 0: stereo: it broke\n", "- s: paper, seed 0: not run\n",
                      "- y: oh\n", "fused with COLMAP's own thresholds",
-                     "| COLMAP | 50.0 / 50.0 / 50.0 |", "COLMAP 3.8 on abacus, 2 cores, 8 GB.",
+                     "| plain | 50.0 / 50.0 / 50.0 |", "COLMAP 3.8 on abacus, 2 cores, 8 GB.",
                      "![How far the depth maps are off](figures/s_errors.png)"):
             self.assertIn(part, text)
         self.assertEqual(text.count("it broke"), 1)
@@ -305,13 +322,13 @@ class ReportTest(ResultsCase):
 
     def test_eth3d(self):
         scene = scenes.all_scenes()[0]
-        self.write_result(scene.set_name, "plain", depth={(0.02, "m"): 0.25}, f1={"fused": 0.5},
+        self.write_result(scene.set_name, "colmap", depth={(0.02, "m"): 0.25}, f1={"fused": 0.5},
                           options=["--any", "1"])
-        text = self.eth3d_report_of([scene], ["plain", "tapa"])
+        text = self.eth3d_report_of([scene], ["colmap", "tapa"])
         for part in ("| COLMAP, TAPA's thresholds | this program | - |",
                      "| 2 cm | 50.00 / 50.00 / 50.00 | - |",
                      f"{scene.set_name}: tapa, seed 0: not run",
-                     "- `plain`: 10 source views --any 1\n", "figures/errors.png"):
+                     f"- `colmap`: 10 source views {COLMAP_OPTIONS} --any 1\n", "figures/errors.png"):
             self.assertIn(part, text)
         self.assertIn("25.0 / 50.0", self.read("report", scene.set_name + ".md"))
         self.assertTrue(os.path.exists(self.path("report/tables/table1.csv")))
@@ -319,10 +336,10 @@ class ReportTest(ResultsCase):
     def test_eth3d_scenes_with_other_options(self):
         two = scenes.all_scenes()[:2]
         for scene, options in zip(two, (["--any", "1"], [])):
-            self.write_result(scene.set_name, "plain", options=options)
-        text = self.eth3d_report_of(two, ["plain"])
+            self.write_result(scene.set_name, "colmap", options=options)
+        text = self.eth3d_report_of(two, ["colmap"])
         for scene, words in zip(two, (" --any 1", "")):
-            self.assertIn(f"- `plain`: 10 source views{words}; **other scenes with other "
+            self.assertIn(f"- `colmap`: 10 source views {COLMAP_OPTIONS}{words}; **other scenes with other "
                           f"options:** this is {scene.set_name}\n", text)
 
 
@@ -368,7 +385,7 @@ class PlanTest(ResultsCase):
                                    "- two: tapa, seed 0: not run"])
         text = self.read("out", "results.md")
         for part in ("# Results\n\nWords.\n\n## First\n\n    scripts/evaluate DATA/s --out "
-                     "OUT/one --methods plain", "| COLMAP | 25.0 / 50.0 / 33.3 |",
+                     "OUT/one --methods plain", "| plain | 25.0 / 50.0 / 33.3 |",
                      "(images/x/one_errors.png)", "In between.\n\n## Second\n",
                      "*`two` has not been run.*"):
             self.assertIn(part, text)
