@@ -31,9 +31,8 @@ if(NOT result EQUAL 0)
 endif()
 set_property(CACHE TAPA_COLMAP_SOURCE_DIR PROPERTY VALUE "${source_dir}")
 
-# COLMAP's sources include some headers of ours, as "tapa/...".
-file(CREATE_LINK ${CMAKE_SOURCE_DIR}/src/colmap ${colmap_dir}/src/tapa
-  SYMBOLIC)
+# COLMAP's sources include some headers of ours, as "src/colmap/...".
+file(CREATE_LINK ${CMAKE_SOURCE_DIR}/src ${colmap_dir}/src/src SYMBOLIC)
 
 # COLMAP's own CUDA code does not compile with today's CUDA, and the engine
 # replaces the part that matters here.

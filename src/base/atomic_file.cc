@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 
 #include "src/base/failure.h"
 
@@ -102,6 +103,19 @@ void RemoveStaleTemporaries(const std::string& folder) {
     }
   }
   closedir(dir);
+}
+
+void PrepareFolder(const std::string& path, const std::string& contents) {
+  std::error_code error;
+  std::filesystem::create_directories(path, error);
+  std::error_code ignored;
+  if (!std::filesystem::is_directory(path, ignored)) {
+    throw Failure("There is no folder " + path + ", and it cannot be made" +
+                  (error ? " (" + error.message() + ")" : "") + "; " +
+                  contents + " are written there");
+  }
+  RemoveStaleTemporaries(path);
+  AtomicFile probe(path + "/probe");
 }
 
 }  // namespace tapa

@@ -37,6 +37,11 @@ class AtomicFile {
 // do not live any more.
 void RemoveStaleTemporaries(const std::string& folder);
 
+// Makes a folder if it is not there, removes such files from it, and throws
+// Failure if files cannot be made in it. contents: what is written there, for
+// the message.
+void PrepareFolder(const std::string& path, const std::string& contents);
+
 }  // namespace tapa
 
 #endif  // TAPA_SRC_BASE_ATOMIC_FILE_H_

@@ -5,18 +5,15 @@
 #include <string>
 
 #include "mvs/patch_match.h"
+#include "src/colmap/pass.h"
 #include "src/mvs/options.h"
 
 namespace tapa {
 
-// The two passes of stereo: the geometric one starts from the result of the
-// photometric one.
-enum class Pass { kPhotometric, kGeometric };
-
 // The pass whose maps are the result.
 Pass FinalPass(const colmap::mvs::PatchMatchOptions& options);
 
-// Throws Failure that names the option, if one is out of range.
+// Throws Failure that names the option if one is out of range.
 void CheckOptions(const colmap::mvs::PatchMatchOptions& options);
 
 // The options, but the seed, as the engine takes them.
@@ -30,7 +27,7 @@ colmap::mvs::PatchMatchOptions PassOptions(
 
 // Key of the random draws for a view in a pass. It does not depend on other
 // views, nor on their order, so that a resumed run gives the same maps.
-uint64_t ViewSeed(uint64_t seed, const std::string& image_name, bool geometric);
+uint64_t ViewSeed(uint64_t seed, const std::string& image_name, Pass pass);
 
 }  // namespace tapa
 

@@ -1,34 +1,48 @@
 #ifndef TAPA_SRC_COLMAP_OPTION_ROWS_H_
 #define TAPA_SRC_COLMAP_OPTION_ROWS_H_
 
+#include <algorithm>
 #include <limits>
 #include <string>
 #include <type_traits>
 
-#include "tapa/host_options.h"
+#include "src/colmap/host_options.h"
 
 // This header is included by COLMAP's own sources.
 
 namespace tapa {
 
+// The limits of a row for an option that is a number.
+inline double LowestInRow(const OptionRange& range) {
+  return range.minus_one.empty() ? std::max(range.min, -1.0) : -1;
+}
+inline double HighestInRow(const OptionRange& range, double limit) {
+  return std::min(range.max, limit);
+}
+
 template <typename Widget>
-void AddOptionRow(Widget* widget, const std::string& name, bool* option) {
-  widget->AddOptionBool(option, name);
+void AddOptionRow(Widget* widget, const OptionEntry& entry, bool* option) {
+  widget->AddOptionBool(option, entry.name);
 }
 template <typename Widget>
-void AddOptionRow(Widget* widget, const std::string& name, int* option) {
-  widget->AddOptionInt(option, name, -1, std::numeric_limits<int>::max());
+void AddOptionRow(Widget* widget, const OptionEntry& entry, int* option) {
+  widget->AddOptionInt(option, entry.name,
+                       static_cast<int>(LowestInRow(entry.range)),
+                       static_cast<int>(HighestInRow(
+                           entry.range, std::numeric_limits<int>::max())));
 }
 template <typename Widget>
-void AddOptionRow(Widget* widget, const std::string& name, double* option) {
+void AddOptionRow(Widget* widget, const OptionEntry& entry, double* option) {
   // Steps follow the value, which may be small.
-  auto* box = widget->AddOptionDouble(option, name, -1, 1e7, 0.01, 8);
+  auto* box =
+      widget->AddOptionDouble(option, entry.name, LowestInRow(entry.range),
+                              HighestInRow(entry.range, 1e7), 0.01, 8);
   box->setStepType(std::decay_t<decltype(*box)>::AdaptiveDecimalStepType);
 }
 template <typename Widget>
-void AddOptionRow(Widget* widget, const std::string& name,
+void AddOptionRow(Widget* widget, const OptionEntry& entry,
                   std::string* option) {
-  widget->AddOptionText(option, name);
+  widget->AddOptionText(option, entry.name);
 }
 
 // Whether the widget has an option on the tab of TAPA.
@@ -38,12 +52,12 @@ inline bool IsTapaOption(const std::string& name) {
 
 template <typename Widget>
 void AddOptionRowsIf(bool is_tapa, Widget* widget, HostOptions* options) {
-  options->Visit([is_tapa, widget](const std::string& name, auto option,
-                                   const std::string& /* help */) {
-    if (IsTapaOption(name) == is_tapa) {
-      AddOptionRow(widget, name, option);
-    }
-  });
+  VisitHostOptions(options,
+                   [is_tapa, widget](const OptionEntry& entry, auto* option) {
+                     if (IsTapaOption(entry.name) == is_tapa) {
+                       AddOptionRow(widget, entry, option);
+                     }
+                   });
 }
 
 // Adds a row per option, without those of TAPA, to a COLMAP OptionsWidget.

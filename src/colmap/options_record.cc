@@ -41,71 +41,13 @@ std::string ToText(double value) {
   return single == value ? ShortestText(single) : ShortestText(value);
 }
 
-bool StartsWith(const std::string& text, const std::string& start) {
-  return text.compare(0, start.size(), start) == 0;
-}
-
-// Whether the maps of a pass depend on an option. An option that is not named
-// here counts, so that a new one is not forgotten.
-bool IsUsed(const std::string& name, const PatchMatchOptions& options) {
-  // They say where and how fast it is computed, and what else is written.
-  // geom_consistency makes the pass another one, and num_iterations is that of
-  // the pass.
-  static const std::set<std::string> unused = {
-      "gpu_index",           "use_gpu",
-      "num_threads",         "cache_size",
-      "allow_missing_files", "write_consistency_graph",
-      "geom_consistency",    "tapa_debug",
-      "num_geom_iterations", "colmap_defaults",
-  };
-  if (unused.count(name) > 0) {
-    return false;
-  }
-  if (StartsWith(name, "geom_consistency_") && !options.geom_consistency) {
-    return false;
-  }
-  if (name == "filter_geom_consistency_max_cost" && !options.geom_consistency) {
-    return false;
-  }
-  // Refinement stands in for the filter.
-  if (name == "filter" && options.tapa) {
-    return false;
-  }
-  if (StartsWith(name, "filter_")) {
-    return options.tapa ? options.tapa_refinement : options.filter;
-  }
-  if (StartsWith(name, "tapa_")) {
-    const bool superpixels =
-        options.tapa_fine_superpixels || options.tapa_coarse_superpixels;
-    // The beginnings of names, and whether what they belong to is on.
-    const std::vector<std::pair<std::string, bool>> parts = {
-        {"tapa_weight_range", options.tapa_texture_weighting},
-        {"tapa_fine_divisor", options.tapa_fine_superpixels},
-        {"tapa_coarse_divisor", options.tapa_coarse_superpixels},
-        {"tapa_plane_", superpixels},
-        {"tapa_relative_plane_", superpixels},
-        {"tapa_fill_", options.tapa_refinement},
-        {"tapa_completion", options.tapa_refinement},
-        {"tapa_completion_",
-         options.tapa_refinement && options.tapa_completion},
-    };
-    for (const auto& [start, is_on] : parts) {
-      if (StartsWith(name, start) && !is_on) {
-        return false;
-      }
-    }
-    return options.tapa;
-  }
-  return true;
-}
-
 }  // namespace
 
 OptionValues OptionsOfMaps(const PatchMatchOptions& options) {
   OptionValues values;
-  VisitOptions(options, [&](const std::string& name, const auto& value) {
-    if (IsUsed(name, options)) {
-      values[name] = ToText(value);
+  VisitOptions(options, [&](const OptionEntry& entry, const auto* value) {
+    if (entry.changes_maps) {
+      values[entry.name] = ToText(*value);
     }
   });
   return values;

@@ -5,13 +5,14 @@
 #include <exception>
 #include <iostream>
 #include <new>
-#include <thread>
+#include <utility>
 
 #include "mvs/patch_match.h"
 #include "src/base/failure.h"
 #include "src/colmap/engine_options.h"
 #include "src/colmap/interrupt.h"
 #include "src/colmap/option_list.h"
+#include "src/colmap/stereo_plan.h"
 #include "src/colmap/stereo_run.h"
 #include "src/colmap/workers.h"
 #include "src/mvs/device_trial.h"
@@ -22,9 +23,10 @@ namespace mvs {
 
 void PatchMatchOptions::Print() const {
   PrintHeading2("PatchMatchOptions");
-  tapa::VisitOptions(*this, [](const std::string& name, const auto& value) {
-    std::cout << name << ": " << value << std::endl;
-  });
+  tapa::VisitOptions(*this,
+                     [](const tapa::OptionEntry& entry, const auto* value) {
+                       std::cout << entry.name << ": " << *value << std::endl;
+                     });
 }
 
 PatchMatchController::PatchMatchController(const PatchMatchOptions& options,
@@ -53,7 +55,7 @@ void PatchMatchController::Run() {
   const auto stopped = [&] { return interrupt.Signal() != 0 || IsStopped(); };
   exit_status_ = EXIT_FAILURE;
   try {
-    tapa::CheckOptions(options_);
+    tapa::StereoPlan plan = tapa::MakeStereoPlan(options_, location);
     const tapa::Workers workers = tapa::ChooseWorkers(
         options_.use_gpu, options_.gpu_index, tapa::FindDevices(),
         [&](int device) {
@@ -65,8 +67,8 @@ void PatchMatchController::Run() {
     if (!workers.message.empty()) {
       std::cout << workers.message << std::endl;
     }
-    tapa::StereoRun run(options_, location, workers.devices);
-    if (run.Run(stopped)) {
+    tapa::StereoRun run(std::move(plan), workers.devices, stopped);
+    if (run.Run()) {
       exit_status_ = EXIT_SUCCESS;
     } else {
       if (interrupt.Signal() != 0) {

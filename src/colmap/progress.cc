@@ -34,6 +34,10 @@ std::string TimeText(double seconds) {
 
 }  // namespace
 
+void PrintWarning(const std::string& text) {
+  std::cout << "WARNING: " << text << std::endl;
+}
+
 Progress::Progress(double total)
     : total_(total), is_terminal_(isatty(STDOUT_FILENO)) {}
 
@@ -41,7 +45,7 @@ void Progress::CountTime() {
   const Clock::time_point now = Clock::now();
   const double cpu_now = CpuSeconds();
   if (!running_.empty()) {
-    Totals& pass = passes_[geometric_];
+    Totals& pass = passes_[pass_];
     pass.seconds += std::chrono::duration<double>(now - last_count_).count();
     pass.cpu_seconds += cpu_now - last_cpu_count_;
   }
@@ -49,13 +53,12 @@ void Progress::CountTime() {
   last_cpu_count_ = cpu_now;
 }
 
-int Progress::BeginView(const std::string& where, const std::string& what,
-                        bool geometric, double megapixels) {
+int Progress::BeginView(Pass pass, const std::string& what, double megapixels) {
   const std::lock_guard<std::mutex> lock(mutex_);
   CountTime();
-  geometric_ = geometric;
+  pass_ = pass;
   last_update_ = last_count_;
-  running_[next_view_] = {where,      what,        geometric,
+  running_[next_view_] = {pass, std::string(PassName(pass)) + " " + what,
                           megapixels, last_count_, last_cpu_count_};
   return next_view_++;
 }
@@ -63,9 +66,9 @@ int Progress::BeginView(const std::string& where, const std::string& what,
 std::string Progress::TimeToGo() const {
   double done = 0;
   double seconds = 0;
-  for (const Totals& pass : passes_) {
-    done += pass.megapixels;
-    seconds += pass.seconds;
+  for (const auto& [pass, totals] : passes_) {
+    done += totals.megapixels;
+    seconds += totals.seconds;
   }
   for (const auto& [number, view] : running_) {
     done += view.share * view.megapixels;
@@ -91,9 +94,8 @@ void Progress::Update(int number, double share) {
   const double done = share * view.megapixels;
   const std::string speed =
       done > 0 ? Format(", %.1f s per megapixel", seconds / done) : "";
-  const std::string line = "\r\033[K" + TimeToGo() + "  " + view.where + " " +
-                           view.what + ": " + Format("%.0f %%", 100 * share) +
-                           speed;
+  const std::string line = "\r\033[K" + TimeToGo() + "  " + view.what + ": " +
+                           Format("%.0f %%", 100 * share) + speed;
   // To the terminal alone: the graphical interface keeps a log of std::cout.
   std::fputs(line.c_str(), stdout);
   std::fflush(stdout);
@@ -106,7 +108,7 @@ void Progress::EndView(int number) {
   const View view = running_.at(number);
   const bool alone = running_.size() == 1;
   running_.erase(number);
-  passes_[view.geometric].megapixels += view.megapixels;
+  passes_[view.pass].megapixels += view.megapixels;
   const double seconds =
       std::chrono::duration<double>(last_count_ - view.begin).count();
   // Other views' CPU time cannot be told from this one's.
@@ -115,7 +117,7 @@ void Progress::EndView(int number) {
                      (last_cpu_count_ - view.cpu_begin) / view.megapixels)
             : "";
   Clear();
-  std::cout << TimeToGo() << "  " << view.where << " " << view.what
+  std::cout << TimeToGo() << "  " << view.what
             << Format(": %.2f megapixels in %.1f s, %.1f s", view.megapixels,
                       seconds, seconds / view.megapixels)
             << cpu << " per megapixel" << std::endl;
@@ -135,23 +137,20 @@ void Progress::Clear() {
 }
 
 void Progress::PrintSummary() const {
-  const char* names[] = {"photometric", "geometric"};
   double seconds = 0;
   double cpu_seconds = 0;
-  int num_passes = 0;
   std::string text;
-  for (int i = 0; i < 2; ++i) {
-    const Totals& pass = passes_[i];
-    if (pass.megapixels > 0) {
-      text += Format("%s %.1f (CPU %.1f), ", names[i],
-                     pass.seconds / pass.megapixels,
-                     pass.cpu_seconds / pass.megapixels);
-      seconds += pass.seconds / pass.megapixels;
-      cpu_seconds += pass.cpu_seconds / pass.megapixels;
-      ++num_passes;
+  for (const auto& [pass, totals] : passes_) {
+    if (totals.megapixels > 0) {
+      const double pass_seconds = totals.seconds / totals.megapixels;
+      const double pass_cpu_seconds = totals.cpu_seconds / totals.megapixels;
+      text += Format("%s %.1f (CPU %.1f), ", PassName(pass), pass_seconds,
+                     pass_cpu_seconds);
+      seconds += pass_seconds;
+      cpu_seconds += pass_cpu_seconds;
     }
   }
-  if (num_passes > 0) {
+  if (!text.empty()) {
     std::cout << "Seconds per megapixel and view: " << text << "together "
               << Format("%.1f (CPU %.1f)", seconds, cpu_seconds) << std::endl;
   }

@@ -1,13 +1,16 @@
 #ifndef TAPA_SRC_COLMAP_PROGRESS_H_
 #define TAPA_SRC_COLMAP_PROGRESS_H_
 
-#include <array>
 #include <chrono>
 #include <map>
 #include <mutex>
 #include <string>
 
+#include "src/colmap/pass.h"
+
 namespace tapa {
+
+void PrintWarning(const std::string& text);
 
 // Tells the user how far a run is: a line per finished view and, on a terminal,
 // one that is renewed in place while a view is computed. Work is measured in
@@ -18,10 +21,9 @@ class Progress {
   // total: megapixels that the run has to compute.
   explicit Progress(double total);
 
-  // what: name of the view, where: its pass and number, for the user. Returns
-  // the number by which the functions below know the view.
-  int BeginView(const std::string& where, const std::string& what,
-                bool geometric, double megapixels);
+  // what: number and name of the view, for the user. Returns the number by
+  // which the functions below know the view.
+  int BeginView(Pass pass, const std::string& what, double megapixels);
   // share: part of the view that is done, 0 to 1.
   void Update(int view, double share);
   void EndView(int view);
@@ -41,16 +43,15 @@ class Progress {
   };
 
   struct View {
-    std::string where;
+    Pass pass;
     std::string what;
-    bool geometric;
     double megapixels;
     Clock::time_point begin;
     double cpu_begin;
     double share = 0;
   };
 
-  // Both with the mutex held.
+  // All with the mutex held.
   std::string TimeToGo() const;
   void Clear();
   // Adds the time since the last call to the pass that is running.
@@ -60,12 +61,12 @@ class Progress {
   const bool is_terminal_;
   std::mutex mutex_;
   bool line_shown_ = false;
-  // Of the photometric and of the geometric pass; time during which several
-  // views are computed counts once.
-  std::array<Totals, 2> passes_;
+  // Time during which several views are computed counts once.
+  std::map<Pass, Totals> passes_;
   std::map<int, View> running_;
   int next_view_ = 0;
-  bool geometric_ = false;
+  // The one that is running.
+  Pass pass_ = Pass::kPhotometric;
   Clock::time_point last_count_;
   double last_cpu_count_ = 0;
   Clock::time_point last_update_;

@@ -3,103 +3,77 @@
 
 #include <atomic>
 #include <functional>
-#include <memory>
 #include <mutex>
 #include <set>
 #include <string>
 #include <vector>
 
-#include "mvs/patch_match.h"
-#include "src/colmap/engine_options.h"
-#include "src/colmap/options_record.h"
-#include "src/colmap/problem_config.h"
+#include "src/colmap/problem_reader.h"
 #include "src/colmap/progress.h"
-#include "src/colmap/view_cache.h"
-#include "src/colmap/views.h"
-#include "src/colmap/workspace.h"
+#include "src/colmap/stereo_plan.h"
 #include "src/mvs/problem.h"
 
 namespace tapa {
 
 struct TapaRecord;
 
-// Computes the maps of all views that a workspace's configuration lists, each
-// worker one view after the other. What can be wrong is looked for before
-// anything is computed. Maps that are there already are kept, so that a run
-// that was stopped goes on where it was, and ends with the same files.
+// Computes what a plan lists, pass by pass, each worker one view after the
+// other. A run that was stopped, or ended by an error, leaves complete maps,
+// and another one that goes on from there ends with the same files.
 class StereoRun {
  public:
-  // workers: for each the GPU that it computes on, or kCpu.
-  StereoRun(const colmap::mvs::PatchMatchOptions& options,
-            const WorkspaceLocation& location, std::vector<int> workers);
+  // workers: for each the GPU that it computes on, or kCpu. stopped: asked
+  // often, and by several threads, whether to end the run.
+  StereoRun(StereoPlan plan, std::vector<int> workers,
+            std::function<bool()> stopped);
 
-  // Returns false if stopped() ended the run, which it can at any time; maps
-  // that are finished by then stay. Throws Failure.
-  bool Run(const std::function<bool()>& stopped);
+  // Returns false if stopped. Throws Failure.
+  bool Run();
 
   // Number of views whose final maps are there, and of all views.
   int NumDone() const { return num_done_; }
-  int NumViews() const { return static_cast<int>(problems_.size()); }
+  int NumViews() const { return static_cast<int>(plan_.problems.size()); }
 
  private:
-  // Returns false if stopped.
-  bool Prepare(const std::function<bool()>& stopped);
-  void DropMissing();
-  bool DropMissingOnce();
-  void CheckDepthRanges() const;
-  void CheckRecords() const;
-  void CheckMaps() const;
-  bool ReadPhotos(const std::function<bool()>& stopped);
+  // A view to compute in a pass.
+  struct Task {
+    const PassPlan& pass;
+    const ViewIndices& problem;
+    const SceneView& view;
+    // The number by which progress_ knows it.
+    int progress_view;
+  };
+
+  bool Stopped() const { return halted_ || stopped_(); }
   void PrepareFolders() const;
+  // The functions below return false if stopped.
+  bool ComputePass(const PassPlan& pass);
+  bool ComputeProblem(size_t number, const PassPlan& pass, int device);
+  bool ComputeView(const Task& task, int device);
+  bool ComputeViewOn(int device, const Task& task);
+  bool WriteView(const Task& task, const Estimate& estimate,
+                 const ProblemInput& input, const TapaRecord& record);
 
-  // The options that a pass's maps depend on.
-  OptionValues RecordedOptions(Pass pass) const;
-  std::string MapPath(const std::string& kind, int view, Pass pass) const;
-  bool WritesGraph(Pass pass) const;
-  bool WritesPictures(Pass pass) const;
-  void WarnOfMissingPictures() const;
-  // Whether there is any map of a pass.
-  bool HasMaps(Pass pass) const;
-  // Whether all maps of a view are there. Throws Failure if one is damaged.
-  bool IsDone(int view, Pass pass) const;
-
-  bool ComputePass(Pass pass, const std::function<bool()>& stopped);
-  bool ComputeNumberedView(size_t number, Pass pass, int device,
-                           const std::function<bool()>& stopped);
-  bool ComputeView(const ViewIndices& problem, Pass pass, int device,
-                   int progress_view, const std::function<bool()>& stopped);
-  bool ComputeViewOn(int device, const ViewIndices& problem, Pass pass,
-                     int progress_view, const std::function<bool()>& stopped);
   bool IsLost(int device);
   // Whether a worker's GPU is lost while there are others.
   bool LeavesViewsToOthers(int device);
   // Uses the GPU no more, and says why if that is new.
   void GiveUp(int device, const std::string& why);
-  struct Input;
-  bool ReadInput(const ViewIndices& problem, bool geometric, bool color,
-                 const std::function<bool()>& stopped, Input* input);
-  bool WriteView(const ViewIndices& problem, Pass pass,
-                 const Estimate& estimate, const Input& input,
-                 const TapaRecord& record, float min_textureness,
-                 const std::function<bool()>& stopped);
 
-  const colmap::mvs::PatchMatchOptions options_;
-  const WorkspaceLocation location_;
+  const StereoPlan plan_;
   const std::vector<int> workers_;
-  // Held while files are read or pictures written, and while workers share out
-  // views.
+  const std::function<bool()> stopped_;
+  ProblemReader reader_;
+  Progress progress_;
+  // Held while lost GPUs are asked for or pictures are written.
   std::mutex mutex_;
   // Held while the CPU, with all of its threads, computes in place of a GPU.
   std::mutex cpu_mutex_;
   // GPUs that do not work any more.
   std::set<int> lost_devices_;
-  std::vector<SceneView> views_;
-  std::vector<ViewIndices> problems_;
-  std::unique_ptr<ViewCache<uint8_t>> photos_;
-  // Of the photometric pass.
-  std::unique_ptr<ViewCache<float>> depth_maps_;
-  std::unique_ptr<Progress> progress_;
-  std::atomic<int> num_done_{0};
+  // Whether an error or a request has ended the run.
+  std::atomic<bool> halted_{false};
+  std::atomic<int> num_done_;
 };
 
 }  // namespace tapa

@@ -21,14 +21,14 @@ struct SceneView {
   int width = 0;
   int height = 0;
   Camera camera;
-  // Range of the depths that the sparse points suggest; not positive: there
-  // are no points.
+  // Range of the depths that the sparse points suggest; if <= 0, there are no
+  // points.
   double depth_min = -1;
   double depth_max = -1;
 };
 
 // The images of the model, in its order. max_image_size: photographs that are
-// wider or higher, in pixels, are scaled down to it; not positive: none.
+// wider or higher, in pixels, are scaled down to it; if <= 0, none is.
 std::vector<SceneView> SceneViews(const colmap::mvs::Model& model,
                                   int max_image_size);
 

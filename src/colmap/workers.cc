@@ -1,5 +1,6 @@
 #include "src/colmap/workers.h"
 
+#include <regex>
 #include <set>
 #include <sstream>
 
@@ -12,23 +13,9 @@ namespace {
 // CPU looks for its planes, the GPU sweeps the other.
 constexpr int kWorkersPerGpu = 2;
 
-std::vector<int> ParseList(const std::string& text) {
-  std::vector<int> numbers;
-  std::istringstream list(text);
-  for (std::string item; std::getline(list, item, ',');) {
-    try {
-      numbers.push_back(std::stoi(item));
-    } catch (const std::exception&) {
-      throw Failure("PatchMatchStereo.gpu_index is " + text +
-                    ", but must be -1 (all) or a list as in 0,1,2");
-    }
-  }
-  return numbers;
-}
-
 void CheckIndex(int index, const DeviceList& list) {
   const int count = static_cast<int>(list.devices.size());
-  if (index < 0 || index >= count) {
+  if (index >= count) {
     throw Failure("PatchMatchStereo.gpu_index names GPU " +
                   std::to_string(index) + ", but there " +
                   (count == 1
@@ -98,6 +85,23 @@ Workers NamedGpus(const std::vector<int>& indices, const DeviceList& list,
 
 }  // namespace
 
+std::vector<int> ParseGpuIndices(const std::string& gpu_index) {
+  static const std::regex list(" *[0-9]{1,9} *(, *[0-9]{1,9} *)*");
+  std::vector<int> indices;
+  if (gpu_index == "-1") {
+    return indices;
+  }
+  if (!std::regex_match(gpu_index, list)) {
+    throw Failure("PatchMatchStereo.gpu_index is " + gpu_index +
+                  ", but must be -1 (all) or a list as in 0,1,2");
+  }
+  std::istringstream items(gpu_index);
+  for (std::string item; std::getline(items, item, ',');) {
+    indices.push_back(std::stoi(item));
+  }
+  return indices;
+}
+
 Workers ChooseWorkers(bool use_gpu, const std::string& gpu_index,
                       const DeviceList& list,
                       const std::function<std::string(int)>& try_device) {
@@ -111,9 +115,9 @@ Workers ChooseWorkers(bool use_gpu, const std::string& gpu_index,
     const std::string& unusable = list.devices[index].unusable;
     return unusable.empty() ? try_device(index) : unusable;
   };
-  return gpu_index == "-1"
-             ? AllGpus(list, what_is_wrong)
-             : NamedGpus(ParseList(gpu_index), list, what_is_wrong);
+  const std::vector<int> named = ParseGpuIndices(gpu_index);
+  return named.empty() ? AllGpus(list, what_is_wrong)
+                       : NamedGpus(named, list, what_is_wrong);
 }
 
 }  // namespace tapa

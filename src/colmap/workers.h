@@ -20,11 +20,15 @@ struct Workers {
   std::string message;
 };
 
-// gpu_index: "-1", all GPUs with two workers each, or numbers separated by
-// commas: a worker for each, so that a GPU may be named twice. Without any GPU
-// that can be used the CPU is. try_device: says what is wrong with a GPU, or
-// nothing (device_trial.h). Throws Failure if the list is none, or names a GPU
-// that cannot be used.
+// The GPUs of the option gpu_index, numbers from 0 separated by commas; empty:
+// all, for which "-1" stands. Throws Failure that names the option if it is
+// neither.
+std::vector<int> ParseGpuIndices(const std::string& gpu_index);
+
+// gpu_index: of all GPUs each has two workers; for each that is named there is
+// one, so that a GPU may be named twice. Without any GPU that can be used the
+// CPU is. try_device: says what is wrong with a GPU, or nothing
+// (device_trial.h). Throws Failure if a GPU is named that cannot be used.
 Workers ChooseWorkers(bool use_gpu, const std::string& gpu_index,
                       const DeviceList& list,
                       const std::function<std::string(int)>& try_device);

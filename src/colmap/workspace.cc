@@ -65,17 +65,19 @@ std::string WorkspaceLocation::ConfigPath() const {
              : config_path;
 }
 
-std::string WorkspaceLocation::MapPath(const std::string& kind,
+std::string WorkspaceLocation::MapPath(MapKind kind,
                                        const std::string& image_name,
-                                       bool geometric) const {
-  return colmap::JoinPaths(
-      StereoPath(), kind,
-      image_name + (geometric ? ".geometric.bin" : ".photometric.bin"));
+                                       Pass pass) const {
+  const char* folder = kind == MapKind::kDepth    ? "depth_maps"
+                       : kind == MapKind::kNormal ? "normal_maps"
+                                                  : "consistency_graphs";
+  return colmap::JoinPaths(StereoPath(), folder,
+                           image_name + "." + PassName(pass) + ".bin");
 }
 
-std::string WorkspaceLocation::RecordPath(bool geometric) const {
-  return colmap::JoinPaths(StereoPath(), geometric ? "options.geometric.txt"
-                                                   : "options.photometric.txt");
+std::string WorkspaceLocation::RecordPath(Pass pass) const {
+  return colmap::JoinPaths(StereoPath(),
+                           std::string("options.") + PassName(pass) + ".txt");
 }
 
 colmap::mvs::Model ReadWorkspace(const WorkspaceLocation& location) {

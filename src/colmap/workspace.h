@@ -4,6 +4,8 @@
 #include <string>
 
 #include "mvs/model.h"
+#include "src/base/map_files.h"
+#include "src/colmap/pass.h"
 
 namespace tapa {
 
@@ -21,11 +23,10 @@ struct WorkspaceLocation {
   std::string StereoPath() const;
   std::string ConfigPath() const;
 
-  // kind: depth_maps, normal_maps or consistency_graphs.
-  std::string MapPath(const std::string& kind, const std::string& image_name,
-                      bool geometric) const;
+  std::string MapPath(MapKind kind, const std::string& image_name,
+                      Pass pass) const;
   // Record of the options that made the maps of a pass (options_record.h).
-  std::string RecordPath(bool geometric) const;
+  std::string RecordPath(Pass pass) const;
 };
 
 // Reads the sparse model, and makes the stereo folder of a PMVS workspace.

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "src/base/map_files.h"
 #include "src/eval/command_line.h"
 #include "src/eval/depth_map_io.h"
 #include "src/eval/depth_map_score.h"

@@ -2,75 +2,139 @@
 #define TAPA_SRC_MVS_OPTIONS_H_
 
 #include <cstdint>
-#include <string>
+#include <tuple>
+
+#include "src/mvs/option_entry.h"
+
+// COLMAP's own sources include this header, through src/colmap/host_options.h.
 
 namespace tapa {
 
 // Parameters of TAPA: Romanoni and Matteucci, "TAPA-MVS: Textureless-Aware
 // PAtchMatch Multi-View Stereo", ICCV 2019. The defaults are the paper's where
-// it gives a value.
+// it gives a value. What each is for, and its unit, stands in VisitTapaOptions.
 struct TapaOptions {
-  // Whether TAPA runs at all. The parts below do nothing without it.
   bool enabled = false;
 
-  // Weigh costs by textureness (section 4.2).
+  // Parts of the method: sections 4.2, 4.1, 4.1 and 5 of the paper.
   bool texture_weighting = true;
-  // Hypotheses from planes fitted to superpixels, fine and coarse ones
-  // (section 4.1).
   bool fine_superpixels = true;
   bool coarse_superpixels = true;
-  // Remove speckles and fill gaps (section 5) instead of COLMAP's filter.
   bool refinement = true;
 
-  // Variance of intensities (0 to 1) that counts as little texture.
+  // Of the weights.
   double textureness_variance = 0.00005;
-  // Textureness t of a flat patch, above 0 and at most 1. Where t is below 0.5
-  // the weights favour planes. The paper's value is 0.5, with which they never
-  // do (docs/tapa.md).
   double min_textureness = 0.1;
-  // By how much textureness changes the weights: w+ = 1 - range (1 - t),
-  // w- = 1 - range t. 0 to 1.
   double weight_range = 0.2;
 
-  // Number of superpixels: image width / divisor.
+  // Of planes fitted to superpixels.
   double fine_divisor = 20;
   double coarse_divisor = 30;
-  // Largest distance of a point from its superpixel's plane, in scene units;
-  // not positive: relative_plane_distance decides.
   double plane_distance = -1;
-  // The same as a share of the superpixel's median depth.
   double relative_plane_distance = 0.01;
 
-  // Connected regions of at most this share of the image are speckles.
+  // Of refinement.
   double speckle_size = 0.0002;
-  // Neighbouring pixels are connected if their depths differ by at most this
-  // share of the scene's size, depth_max - depth_min.
   double speckle_continuity = 0.1;
-  // Half size of the window that a missing pixel is filled from, in pixels.
   int fill_radius = 5;
-  // How often the fill is repeated: it reaches fill_radius pixels each time.
   int fill_rounds = 1;
 
-  // Beyond the paper: only estimates stay that source views support, one view
-  // fewer than Options::filter_min_num_consistent but at least one. Planes of
-  // superpixels, fitted to those that reach that number, replace the others
-  // (docs/tapa.md).
+  // Part of refinement, beyond the paper (docs/tapa.md). Only estimates stay
+  // that source views support, one view fewer than
+  // Options::filter_min_num_consistent but at least one. Planes of superpixels,
+  // fitted to those that reach that number, replace the others.
   bool completion = true;
-  // Share of the estimates nearby that have to lie on the plane, 0 to 1.
   double completion_agreement = 0.5;
-  // What is nearby: half size of a square, as a share of the image's width.
   double completion_radius = 0.1;
-  // Below this textureness planes replace estimates that are supported but not
-  // by that number of views, too.
   double completion_textureness = 0.5;
-  // Share of a window's pixels that have to speak for the fill of a missing
-  // one, 0 to 1. Without completion any will do, as in the paper.
   double completion_fill_share = 0.5;
-
-  // Throws std::invalid_argument that names the option, with the prefix tapa_,
-  // and its valid range.
-  void Check() const;
 };
+
+// The table of these options: calls visit(entry, pointer to the member) for
+// every one. Options: TapaOptions, or the same as const.
+template <typename Options, typename Visitor>
+void VisitTapaOptions(Options* options, const Visitor& visit) {
+  using Range = OptionRange;
+  auto& o = *options;
+  const bool on = o.enabled;
+  const bool planes = on && (o.fine_superpixels || o.coarse_superpixels);
+  const bool refines = on && o.refinement;
+  const bool completes = refines && o.completion;
+  const auto option = [&visit](const char* name, auto* member, bool is_used,
+                               const char* help, const Range& range = {}) {
+    visit(OptionEntry{name, help, range, is_used}, member);
+  };
+
+  option("tapa", &o.enabled, true,
+         "Complete surfaces without texture (TAPA-MVS); the options tapa_* do "
+         "nothing without it");
+  option("tapa_texture_weighting", &o.texture_weighting, on,
+         "Weigh costs by textureness");
+  option("tapa_fine_superpixels", &o.fine_superpixels, on,
+         "Propose planes fitted to fine superpixels");
+  option("tapa_coarse_superpixels", &o.coarse_superpixels, on,
+         "Propose planes fitted to coarse superpixels");
+  option("tapa_refinement", &o.refinement, on,
+         "Remove speckles and fill gaps, in place of the filter");
+
+  option("tapa_textureness_variance", &o.textureness_variance, on,
+         "Variance of intensities (0 to 1) that counts as little texture",
+         Range::Positive());
+  option("tapa_min_textureness", &o.min_textureness, on,
+         "Textureness t of a flat patch; where it is below 0.5 the weights "
+         "favour planes, while with the paper's 0.5 they never do",
+         Range::From(0, 1).WithoutMin());
+  option("tapa_weight_range", &o.weight_range, on && o.texture_weighting,
+         "By how much textureness t changes the weights: they are 1 - range "
+         "(1 - t) and 1 - range t",
+         Range::From(0, 1));
+
+  option("tapa_fine_divisor", &o.fine_divisor, on && o.fine_superpixels,
+         "Number of fine superpixels: image width / this", Range::Positive());
+  option("tapa_coarse_divisor", &o.coarse_divisor, on && o.coarse_superpixels,
+         "Number of coarse superpixels: image width / this", Range::Positive());
+  option("tapa_plane_distance", &o.plane_distance, planes,
+         "Largest distance of a point from its superpixel's plane, in scene "
+         "units; if <= 0, tapa_relative_plane_distance decides");
+  option("tapa_relative_plane_distance", &o.relative_plane_distance, planes,
+         "The same as a share of the superpixel's median depth",
+         Range::Positive());
+
+  option("tapa_speckle_size", &o.speckle_size, on,
+         "Connected regions of at most this share of the image are speckles",
+         Range::From(0, 1));
+  option("tapa_speckle_continuity", &o.speckle_continuity, on,
+         "Neighbouring pixels are connected if their depths differ by at most "
+         "this share of the scene's range of depths",
+         Range::AtLeast(0));
+  option("tapa_fill_radius", &o.fill_radius, refines,
+         "Half size of the window that a missing pixel is filled from, in "
+         "pixels",
+         Range::From(0, 100));
+  option("tapa_fill_rounds", &o.fill_rounds, refines,
+         "How often the fill is repeated; it reaches tapa_fill_radius pixels "
+         "each time",
+         Range::From(0, 1000));
+
+  option("tapa_completion", &o.completion, refines,
+         "Believe only estimates that source views support, and complete the "
+         "others with planes (beyond the paper)");
+  option("tapa_completion_agreement", &o.completion_agreement, completes,
+         "Share of the estimates nearby that have to lie on a plane",
+         Range::From(0, 1));
+  option("tapa_completion_radius", &o.completion_radius, completes,
+         "What is nearby: half size of a square, as a share of the image's "
+         "width",
+         Range::From(0, 1));
+  option("tapa_completion_textureness", &o.completion_textureness, completes,
+         "Below this textureness planes replace estimates of little support, "
+         "too",
+         Range::From(0, 2));
+  option("tapa_completion_fill_share", &o.completion_fill_share, completes,
+         "Share of a window's pixels that have to speak for the fill of a "
+         "missing one; without completion any will do",
+         Range::From(0, 1));
+}
 
 // Parameters of one depth map estimation. The defaults are COLMAP's
 // (Schoenberger et al., "Pixelwise View Selection for Unstructured Multi-View
@@ -82,7 +146,7 @@ struct Options {
   int window_radius = 5;
   // Distance between the samples in the window, in pixels: 1 or 2.
   int window_step = 1;
-  // Spread of the bilateral weights over distance in pixels; not positive:
+  // Spread of the bilateral weights over distance in pixels; if <= 0, it is
   // window_radius.
   double sigma_spatial = -1;
   // Spread of the bilateral weights over difference in intensity (0 to 1).
@@ -137,6 +201,54 @@ struct Options {
   // Throws std::invalid_argument that names the option and its valid range.
   void Check() const;
 };
+
+inline OptionRange NumThreadsRange() {
+  return OptionRange::From(1, 1024).OrMinusOne("one per core");
+}
+
+// The table of the options that COLMAP has, too, under the same names: calls
+// visit(entry, pointer to the member in each of the options) for every one.
+// options: any number of Options and of COLMAP's; the first says which are in
+// use.
+template <typename Visitor, typename... AnyOptions>
+void VisitSharedOptions(const Visitor& visit, AnyOptions*... o) {
+  using Range = OptionRange;
+  const auto& first = *std::get<0>(std::tie(o...));
+  const bool geometric = first.geom_consistency;
+  // TAPA's refinement stands in for the filter.
+  const bool filters =
+      first.tapa.enabled ? first.tapa.refinement : first.filter;
+  const auto option = [&visit](const char* name, const Range& range,
+                               bool is_used, auto*... members) {
+    visit(OptionEntry{name, "", range, is_used}, members...);
+  };
+
+  option("window_radius", Range::From(1, 32), true, &o->window_radius...);
+  option("window_step", Range::From(1, 2), true, &o->window_step...);
+  option("sigma_spatial", {}, true, &o->sigma_spatial...);
+  option("sigma_color", Range::Positive(), true, &o->sigma_color...);
+  option("num_samples", Range::From(1, 10000), true, &o->num_samples...);
+  option("ncc_sigma", Range::Positive(), true, &o->ncc_sigma...);
+  option("min_triangulation_angle", Range::From(0, 180).WithoutMax(), true,
+         &o->min_triangulation_angle...);
+  option("incident_angle_sigma", Range::Positive(), true,
+         &o->incident_angle_sigma...);
+  option("num_iterations", Range::From(1, 1000), true, &o->num_iterations...);
+  // It makes the pass another one, with maps of its own.
+  option("geom_consistency", {}, false, &o->geom_consistency...);
+  option("geom_consistency_regularizer", Range::AtLeast(0), geometric,
+         &o->geom_consistency_regularizer...);
+  option("geom_consistency_max_cost", Range::AtLeast(0), geometric,
+         &o->geom_consistency_max_cost...);
+  option("filter", {}, !first.tapa.enabled, &o->filter...);
+  option("filter_min_ncc", Range::From(-1, 1), filters, &o->filter_min_ncc...);
+  option("filter_min_triangulation_angle", Range::From(0, 180), filters,
+         &o->filter_min_triangulation_angle...);
+  option("filter_min_num_consistent", Range::AtLeast(0), filters,
+         &o->filter_min_num_consistent...);
+  option("filter_geom_consistency_max_cost", Range::AtLeast(0),
+         filters && geometric, &o->filter_geom_consistency_max_cost...);
+}
 
 }  // namespace tapa
 

@@ -2,13 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <iterator>
+#include <cmath>
 #include <limits>
-#include <new>
 #include <set>
+#include <sstream>
 #include <string>
-#include <vector>
 
 #include "src/base/failure.h"
 
@@ -24,29 +22,6 @@ std::string ErrorOf(const PatchMatchOptions& options) {
     return error.what();
   }
   return "";
-}
-
-// Bytes of options of TAPA, to tell apart any two of them. Those between the
-// members are zeros.
-std::string TapaBytes(const TapaOptions& options) {
-  std::string bytes(reinterpret_cast<const char*>(&options), sizeof(options));
-  // What the constructor leaves alone lies between the members.
-  alignas(TapaOptions) char zeros[sizeof(TapaOptions)];
-  alignas(TapaOptions) char ones[sizeof(TapaOptions)];
-  std::fill(std::begin(zeros), std::end(zeros), '\0');
-  std::fill(std::begin(ones), std::end(ones), '\1');
-  new (zeros) TapaOptions;
-  new (ones) TapaOptions;
-  for (size_t i = 0; i < bytes.size(); ++i) {
-    if (zeros[i] != ones[i]) {
-      bytes[i] = 0;
-    }
-  }
-  return bytes;
-}
-
-std::string TapaBytes(const PatchMatchOptions& options) {
-  return TapaBytes(EngineOptions(options).tapa);
 }
 
 TEST(EngineOptions, DefaultsAgree) {
@@ -66,41 +41,41 @@ TEST(EngineOptions, DefaultsAgree) {
   EXPECT_EQ(options.num_threads, defaults.num_threads);
 }
 
-TEST(EngineOptions, TapaDefaultsAgree) {
-  EXPECT_EQ(TapaBytes(PatchMatchOptions()), TapaBytes(TapaOptions()));
+// What the engine gets, as text.
+std::string Text(const Options& options) {
+  std::ostringstream text;
+  const auto add = [&text](const OptionEntry& entry, const auto* value) {
+    text << entry.name << " " << *value << "\n";
+  };
+  VisitSharedOptions(add, &options);
+  VisitTapaOptions(&options.tapa, add);
+  text << options.num_threads;
+  return text.str();
 }
 
 void Change(bool* value) { *value = !*value; }
 void Change(int* value) { *value += 3; }
 void Change(double* value) { *value += 0.25; }
-[[maybe_unused]] void Change(std::string* value) { *value += "x"; }
 
-TEST(EngineOptions, EveryTapaOptionIsPassedOn) {
-  std::vector<std::string> names;
-  PatchMatchOptions().Visit(
-      [&](const std::string& name, auto*, const std::string&) {
-        if (name.compare(0, 4, "tapa") == 0 && name != "tapa_debug") {
-          names.push_back(name);
-        }
-      });
-  EXPECT_GE(names.size(), 5);
-  std::set<std::string> results = {TapaBytes(PatchMatchOptions())};
-  for (const std::string& changed : names) {
-    PatchMatchOptions options;
-    options.Visit(
-        [&](const std::string& name, auto* value, const std::string&) {
-          if (name == changed) {
-            Change(value);
-          }
-        });
-    EXPECT_TRUE(results.insert(TapaBytes(options)).second)
-        << changed << " changes nothing, or what another option changes";
-  }
+TEST(EngineOptions, EveryOptionIsPassedOn) {
+  std::set<std::string> results = {Text(EngineOptions(PatchMatchOptions()))};
+  const auto expect_difference = [&](const std::string& name,
+                                     const PatchMatchOptions& changed) {
+    EXPECT_TRUE(results.insert(Text(EngineOptions(changed))).second) << name;
+  };
+  PatchMatchOptions options;
+  const auto change = [&](const OptionEntry& entry, auto* value) {
+    Change(value);
+    expect_difference(entry.name, options);
+  };
+  VisitSharedOptions(change, &options);
+  VisitTapaOptions(&options.tapa, change);
+  change(OptionEntry{"num_threads", ""}, &options.num_threads);
 }
 
 TEST(EngineOptions, FirstPassNeitherFiltersNorRefinesNorChecksGeometry) {
   PatchMatchOptions given;
-  given.tapa = true;
+  given.tapa.enabled = true;
   const Options options = EngineOptions(PassOptions(given, Pass::kPhotometric));
   EXPECT_FALSE(options.geom_consistency);
   EXPECT_FALSE(options.filter);
@@ -195,30 +170,59 @@ TEST(ViewSeed, DependsOnAllItIsGiven) {
   std::set<uint64_t> seeds;
   for (const uint64_t seed : {0, 1}) {
     for (const char* name : {"a.jpg", "b.jpg", "ab.jpg"}) {
-      for (const bool geometric : {false, true}) {
-        seeds.insert(ViewSeed(seed, name, geometric));
+      for (const Pass pass : {Pass::kPhotometric, Pass::kGeometric}) {
+        seeds.insert(ViewSeed(seed, name, pass));
       }
     }
   }
   EXPECT_EQ(seeds.size(), 12);
-  EXPECT_EQ(ViewSeed(1, "a.jpg", true), ViewSeed(1, "a.jpg", true));
+  EXPECT_EQ(ViewSeed(1, "a.jpg", Pass::kGeometric),
+            ViewSeed(1, "a.jpg", Pass::kGeometric));
 }
 
-TEST(HostOptions, VisitListsEveryOptionOnce) {
-  PatchMatchOptions options;
+TEST(HostOptions, TableListsEveryOptionOnce) {
   std::set<std::string> names;
   int num = 0;
-  options.Visit(
-      [&](const std::string& name, auto* option, const std::string& help) {
-        names.insert(name);
-        ++num;
-        EXPECT_NE(option, nullptr);
-        EXPECT_NE(help, "") << name;
-      });
+  const HostOptions options;
+  VisitHostOptions(&options, [&](const OptionEntry& entry, const auto* value) {
+    names.insert(entry.name);
+    ++num;
+    EXPECT_NE(entry.help, "") << entry.name;
+    // Every default is valid.
+    CheckOption(entry, *value);
+  });
   EXPECT_EQ(static_cast<int>(names.size()), num);
-  EXPECT_EQ(names.count("use_gpu"), 1);
-  EXPECT_EQ(names.count("num_threads"), 1);
-  EXPECT_EQ(names.count("seed"), 1);
+}
+
+TEST(OptionEntry, RangesSayWhatTheyContain) {
+  using Range = OptionRange;
+  EXPECT_EQ(Range().Text(), "a number");
+  EXPECT_EQ(Range::Positive().Text(), "positive");
+  EXPECT_EQ(Range::AtLeast(-2).Text(), "at least -2");
+  EXPECT_EQ(Range::AtLeast(2).WithoutMin().Text(), "above 2");
+  EXPECT_EQ(Range::From(1, 32).Text(), "from 1 to 32");
+  EXPECT_EQ(Range::From(0, 1).WithoutMin().Text(), "above 0 and at most 1");
+  EXPECT_EQ(Range::From(0, 180).WithoutMax().Text(),
+            "at least 0 and below 180");
+  EXPECT_EQ(Range::From(1, 9).OrMinusOne("all").Text(),
+            "-1 (all) or from 1 to 9");
+
+  EXPECT_TRUE(Range::From(1, 32).Contains(1));
+  EXPECT_TRUE(Range::From(1, 32).Contains(32));
+  EXPECT_FALSE(Range::From(1, 32).Contains(0.5));
+  EXPECT_FALSE(Range::From(1, 32).Contains(33));
+  EXPECT_FALSE(Range::From(1, 32).Contains(-1));
+  EXPECT_TRUE(Range::From(1, 32).OrMinusOne("all").Contains(-1));
+  EXPECT_FALSE(Range::From(1, 32).OrMinusOne("all").Contains(-2));
+  EXPECT_FALSE(Range::Positive().Contains(0));
+  EXPECT_FALSE(Range::From(0, 180).WithoutMax().Contains(180));
+  for (const double value : {NAN, INFINITY, -INFINITY}) {
+    EXPECT_FALSE(Range().Contains(value));
+  }
+
+  const OptionEntry entry{"seed", "Key", Range::AtLeast(0)};
+  EXPECT_EQ(entry.HelpWithRange(), "Key (at least 0)");
+  EXPECT_EQ(OptionEntry({"a", "Help"}).HelpWithRange(), "Help");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "src/colmap/map_files.h"
+#include "src/base/map_files.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -72,18 +72,17 @@ TEST(MapFiles, ReadsWhatColmapWrites) {
   colmap::mvs::DepthMap depth(3, 2, 0, 10);
   depth.Set(1, 2, 7.5f);
   depth.Write(folder.Path("depth.bin"));
-  EXPECT_EQ(ReadDepthMap(folder.Path("depth.bin"), 3, 2).At(1, 2), 7.5f);
+  EXPECT_EQ(ReadDepthMap(folder.Path("depth.bin")).At(1, 2), 7.5f);
 
   colmap::mvs::NormalMap normal(3, 2);
   normal.Set(1, 0, 2, -1);
   normal.Write(folder.Path("normal.bin"));
-  EXPECT_EQ(ReadNormalMap(folder.Path("normal.bin"), 3, 2).At(1, 0).z, -1);
+  EXPECT_EQ(ReadNormalMap(folder.Path("normal.bin")).At(1, 0).z, -1);
 }
 
 TEST(MapFiles, ColmapReadsGraph) {
   const TestFolder folder;
   WriteGraph(folder.Path("a.bin"), 3, 2, {2, 1, 2, 40, 50});
-  EXPECT_EQ(CheckGraphFile(folder.Path("a.bin"), 3, 2), "");
   colmap::mvs::ConsistencyGraph graph;
   graph.Read(folder.Path("a.bin"));
   int num_images = 0;
@@ -94,35 +93,58 @@ TEST(MapFiles, ColmapReadsGraph) {
   EXPECT_EQ(images[1], 50);
 }
 
+// Of a file that ought to be a map of 3x2 pixels; empty: nothing.
+std::string WhatIsWrong(const std::string& path,
+                        MapKind kind = MapKind::kDepth) {
+  try {
+    CheckMapFile(path, kind, 3, 2);
+  } catch (const Failure& error) {
+    EXPECT_NE(std::string(error.what()).find(path), std::string::npos);
+    return error.what();
+  }
+  return "";
+}
+
+TEST(MapFiles, ChecksSizeAndKind) {
+  const TestFolder folder;
+  const std::string path = folder.Path("a.bin");
+  WriteDepthMap(path, SomeDepths());
+  EXPECT_EQ(WhatIsWrong(path), "");
+  EXPECT_NE(WhatIsWrong(path, MapKind::kNormal), "");
+  EXPECT_THROW(ReadNormalMap(path), Failure);
+  WriteDepthMap(path, Map<float>(2, 3));
+  EXPECT_NE(WhatIsWrong(path).find("2x3x1, but 3x2x1"), std::string::npos);
+}
+
 TEST(MapFiles, RefusesDamagedFiles) {
   const TestFolder folder;
   const std::string path = folder.Path("a.bin");
-  EXPECT_THROW(ReadDepthMap(path, 3, 2), Failure);
-
+  EXPECT_NE(WhatIsWrong(path), "") << "none";
+  EXPECT_NE(WhatIsWrong(folder.Path("")), "") << "a folder";
   WriteDepthMap(path, SomeDepths());
-  EXPECT_EQ(CheckMapFile(path, 3, 2, 1), "");
-  EXPECT_NE(CheckMapFile(path, 2, 3, 1), "");
-  EXPECT_NE(CheckMapFile(path, 3, 2, 3), "");
   Truncate(path, 4);
-  EXPECT_NE(CheckMapFile(path, 3, 2, 1), "");
-  EXPECT_THROW(ReadDepthMap(path, 3, 2), Failure);
-
+  EXPECT_NE(WhatIsWrong(path), "");
+  EXPECT_THROW(ReadDepthMap(path), Failure);
   WriteDepthMap(path, SomeDepths());
   std::ofstream(path, std::ios::app) << "x";
-  EXPECT_NE(CheckMapFile(path, 3, 2, 1), "");
-
-  for (const char* text : {"", "3&2&", "nothing of the kind", "3&2&1",
-                           "99999999999999999999999&2&1&"}) {
+  EXPECT_NE(WhatIsWrong(path), "");
+  for (const char* text :
+       {"", "3&2&", "nothing of the kind", "3&2&1", " 3&2&1&", "-3&2&1&",
+        "99999999999999999999999&2&1&"}) {
     std::ofstream(path, std::ios::trunc) << text;
-    EXPECT_NE(CheckMapFile(path, 3, 2, 1), "") << text;
+    EXPECT_NE(WhatIsWrong(path), "") << text;
   }
-  EXPECT_NE(CheckMapFile(folder.Path(""), 3, 2, 1), "") << "a folder";
+  // Graphs may have any length, of whole numbers.
+  WriteGraph(path, 3, 2, {2, 1, 1, 40});
+  EXPECT_EQ(WhatIsWrong(path, MapKind::kConsistencyGraph), "");
+  Truncate(path, 1);
+  EXPECT_NE(WhatIsWrong(path, MapKind::kConsistencyGraph), "");
 }
 
 TEST(MapFiles, MakesFolders) {
   const TestFolder folder;
   WriteDepthMap(folder.Path("x/y/a.bin"), SomeDepths());
-  EXPECT_EQ(CheckMapFile(folder.Path("x/y/a.bin"), 3, 2, 1), "");
+  EXPECT_EQ(WhatIsWrong(folder.Path("x/y/a.bin")), "");
 }
 
 TEST(AtomicFile, IsNotThereUntilComplete) {

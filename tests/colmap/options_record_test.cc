@@ -71,7 +71,7 @@ TEST(OptionsOfMaps, LeavesOutWhatNothingReads) {
   EXPECT_EQ(values.count("filter"), 1);
   EXPECT_EQ(values.count("filter_min_ncc"), 0);
 
-  options.tapa = true;
+  options.tapa.enabled = true;
   values = OptionsOfMaps(options);
   EXPECT_EQ(values.count("filter"), 0) << "refinement stands in for it";
   for (const char* name :
@@ -79,16 +79,16 @@ TEST(OptionsOfMaps, LeavesOutWhatNothingReads) {
         "tapa_plane_distance", "tapa_fill_radius", "tapa_speckle_size"}) {
     EXPECT_EQ(values.count(name), 1) << name;
   }
-  options.tapa_texture_weighting = false;
-  options.tapa_fine_superpixels = false;
-  options.tapa_refinement = false;
+  options.tapa.texture_weighting = false;
+  options.tapa.fine_superpixels = false;
+  options.tapa.refinement = false;
   values = OptionsOfMaps(options);
   EXPECT_EQ(values.at("tapa_fine_superpixels"), "0");
   EXPECT_EQ(values.count("tapa_weight_range"), 0);
   EXPECT_EQ(values.count("tapa_fine_divisor"), 0);
   EXPECT_EQ(values.count("tapa_plane_distance"), 1);
   EXPECT_EQ(values.count("tapa_fill_radius"), 0);
-  options.tapa_coarse_superpixels = false;
+  options.tapa.coarse_superpixels = false;
   EXPECT_EQ(OptionsOfMaps(options).count("tapa_plane_distance"), 0);
 }
 
@@ -122,14 +122,14 @@ TEST(DescribeDifferences, APassBeforeTheGeometricOneIsNotAFinalOne) {
   final_pass.filter = false;
   EXPECT_EQ(DifferenceOf(final_pass, PassOptions(options, Pass::kPhotometric)),
             "");
-  options.tapa = final_pass.tapa = true;
+  options.tapa.enabled = final_pass.tapa.enabled = true;
   EXPECT_EQ(DifferenceOf(final_pass, PassOptions(options, Pass::kPhotometric)),
             "tapa_refinement was 1, is 0");
 }
 
 TEST(DescribeDifferences, NamesTheSwitchRatherThanWhatFollows) {
   PatchMatchOptions options;
-  options.tapa = true;
+  options.tapa.enabled = true;
   EXPECT_EQ(DifferenceOf(PatchMatchOptions(), options), "tapa was 0, is 1");
 }
 
@@ -157,7 +157,7 @@ TEST(OptionsRecord, ReadsWhatItWrites) {
   const std::string path = folder.Path("options.txt");
   EXPECT_FALSE(ReadOptionsRecord(path));
   PatchMatchOptions options;
-  options.tapa = true;
+  options.tapa.enabled = true;
   const OptionValues values = OptionsOfMaps(options);
   WriteOptionsRecord(path, OptionsOfMaps(PatchMatchOptions()));
   WriteOptionsRecord(path, values);

@@ -74,9 +74,9 @@ TEST(Workers, NameWhatIsWrongWithTheList) {
     return "";
   };
   EXPECT_NE(error("3").find("only GPUs 0 to 2"), std::string::npos);
-  EXPECT_NE(error("-2").find("only GPUs 0 to 2"), std::string::npos);
+  EXPECT_NE(error("-2").find("gpu_index is -2"), std::string::npos);
   EXPECT_NE(error("0,1").find("it is too old"), std::string::npos);
-  EXPECT_NE(error("x").find("gpu_index"), std::string::npos);
+  EXPECT_NE(error("x").find("gpu_index is x"), std::string::npos);
 }
 
 // Whatever the machine, asking is safe.

@@ -37,9 +37,9 @@ QPushButton* FindButton(QWidget* widget, const QString& text) {
 std::string OptionsText(const tapa::HostOptions& options) {
   std::ostringstream text;
   text.precision(17);
-  options.Visit(
-      [&](const std::string& name, const auto* value, const std::string&) {
-        text << name << " = " << *value << std::endl;
+  tapa::VisitHostOptions(
+      &options, [&](const tapa::OptionEntry& entry, const auto* value) {
+        text << entry.name << " = " << *value << std::endl;
       });
   return text.str();
 }
@@ -67,10 +67,10 @@ int main(int argc, char** argv) {
     labels.insert(label->text().toStdString());
   }
   std::vector<std::string> names = {"gpu_index"};
-  options.patch_match_stereo->Visit(
-      [&](const std::string& name, auto*, const std::string&) {
-        names.push_back(name);
-      });
+  tapa::VisitHostOptions(options.patch_match_stereo.get(),
+                         [&](const tapa::OptionEntry& entry, auto*) {
+                           names.push_back(entry.name);
+                         });
   for (const std::string& name : names) {
     if (labels.count(name) == 0) {
       std::cerr << "There is no row for the option " << name << std::endl;
@@ -79,7 +79,7 @@ int main(int argc, char** argv) {
   }
 
   // Looking at our options changes none, however small it is.
-  options.patch_match_stereo->tapa_textureness_variance = 0.0000125;
+  options.patch_match_stereo->tapa.textureness_variance = 0.0000125;
   const std::string before = OptionsText(*options.patch_match_stereo);
   auto* tabs = dense_widget.findChild<QTabWidget*>();
   tabs->window()->show();

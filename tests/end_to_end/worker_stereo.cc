@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "mvs/patch_match.h"
+#include "src/colmap/stereo_plan.h"
 #include "src/colmap/stereo_run.h"
 
 int main(int argc, char** argv) {
@@ -21,7 +22,7 @@ int main(int argc, char** argv) {
   options.num_iterations = 1;
   options.window_radius = 3;
   options.num_threads = 1;
-  options.tapa = true;
+  options.tapa.enabled = true;
   options.write_consistency_graph = true;
   tapa::WorkspaceLocation location;
   location.path = argv[1];
@@ -32,10 +33,10 @@ int main(int argc, char** argv) {
     workers.push_back(std::atoi(argv[i]));
   }
   try {
-    tapa::StereoRun run(options, location, workers);
-    return run.Run([] { return false; }) && run.NumDone() == run.NumViews()
-               ? EXIT_SUCCESS
-               : EXIT_FAILURE;
+    tapa::StereoRun run(tapa::MakeStereoPlan(options, location), workers,
+                        [] { return false; });
+    return run.Run() && run.NumDone() == run.NumViews() ? EXIT_SUCCESS
+                                                        : EXIT_FAILURE;
   } catch (const std::exception& error) {
     std::cerr << "ERROR: " << error.what() << std::endl;
     return EXIT_FAILURE;

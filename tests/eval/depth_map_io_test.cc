@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "src/base/map_files.h"
 #include "tests/eval/test_files.h"
 
 namespace tapa {

@@ -1,0 +1,45 @@
+#ifndef TAPA_SRC_BASE_MAP_FILES_H_
+#define TAPA_SRC_BASE_MAP_FILES_H_
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "src/base/map.h"
+#include "src/base/vec3.h"
+
+namespace tapa {
+
+// Files in COLMAP's format of dense maps: the header "WIDTH&HEIGHT&CHANNELS&"
+// in text, then 32-bit little-endian values, one channel after the other, each
+// in row-major order. Depth is that along the camera's axis, in scene units;
+// normals have unit length and are in the camera's frame (x right, y down, z
+// forward); both are 0 where there is no estimate. Consistency graphs have one
+// channel, by their header, and a list of integers of any length.
+//
+// A file is valid if its header is and if it has exactly the length that this
+// asks for.
+enum class MapKind { kDepth, kNormal, kConsistencyGraph };
+
+// Throws Failure that names the file and what is wrong with it, unless it is a
+// valid one of this kind and size.
+void CheckMapFile(const std::string& path, MapKind kind, int width, int height);
+
+// Read a valid file of any size. Throw Failure as CheckMapFile does. Values are
+// returned as they stand in the file.
+Map<float> ReadDepthMap(const std::string& path);
+Map<Vec3> ReadNormalMap(const std::string& path);
+
+// Write a file such that it is there under its name only when it is complete:
+// beside it first, then renamed. Folders are made as needed. Throw Failure,
+// and leave nothing behind, if that is impossible.
+void WriteDepthMap(const std::string& path, const Map<float>& map);
+void WriteNormalMap(const std::string& path, const Map<Vec3>& map);
+// graph: for each pixel that some source views support: column, row, number
+// of views, indices of the views.
+void WriteGraph(const std::string& path, int width, int height,
+                const std::vector<int32_t>& graph);
+
+}  // namespace tapa
+
+#endif  // TAPA_SRC_BASE_MAP_FILES_H_

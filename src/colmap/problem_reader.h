@@ -1,0 +1,56 @@
+#ifndef TAPA_SRC_COLMAP_PROBLEM_READER_H_
+#define TAPA_SRC_COLMAP_PROBLEM_READER_H_
+
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "src/base/map.h"
+#include "src/colmap/stereo_plan.h"
+#include "src/colmap/view_cache.h"
+#include "src/mvs/problem.h"
+
+namespace tapa {
+
+// The engine's problem for a view, and what it borrows.
+struct ProblemInput {
+  Problem problem;
+  std::optional<Map<Rgb>> color;
+  std::vector<std::shared_ptr<const Map<uint8_t>>> photos;
+  std::vector<std::shared_ptr<const Map<float>>> depth_maps;
+};
+
+// Reads what the engine needs to know of a view, and keeps as much as the
+// option cache_size says, but no more than half of the machine's memory. May be
+// used by several threads at a time: they read one after the other.
+class ProblemReader {
+ public:
+  // The plan must outlive it.
+  explicit ProblemReader(const StereoPlan& plan);
+
+  // Reads all photographs that are needed, so that a damaged one is found
+  // before hours are spent. The cache keeps what fits. Returns false if
+  // stopped; throws Failure.
+  bool ReadPhotos(const std::function<bool()>& stopped);
+
+  // Returns nothing if stopped. Throws Failure.
+  std::unique_ptr<ProblemInput> Read(const ViewIndices& problem,
+                                     const PassPlan& pass,
+                                     const std::function<bool()>& stopped);
+
+ private:
+  Map<float> ReadDepth(int view) const;
+  Map<Vec3> ReadNormal(int view) const;
+
+  const StereoPlan& plan_;
+  std::mutex mutex_;
+  ViewCache<uint8_t> photos_;
+  // Of the photometric pass.
+  ViewCache<float> depth_maps_;
+};
+
+}  // namespace tapa
+
+#endif  // TAPA_SRC_COLMAP_PROBLEM_READER_H_
