@@ -235,7 +235,7 @@ TEST_P(SweepTest, MakesTheChoicesOfTheReference) {
   }
   // Some hypotheses are alike to all digits of single precision, and what one
   // pixel chooses spreads.
-  constexpr double kShareSame = 0.998;
+  constexpr double kShareSame = 0.995;
   EXPECT_GE(num_same, kShareSame * depth.size());
   EXPECT_GE(num_same_choices, kShareSame * depth.size());
   EXPECT_GT(num_changed, 0.25 * depth.size());
@@ -555,10 +555,12 @@ TEST(Sweep, DrawsViewsInProportionToTheirProbability) {
   s.order = order.data();
   s.uniform = uniform.data();
   double total[4] = {};
+  SweepParams params;
+  params.num_samples = 15;
   for (int i = 0; i < 20000; ++i) {
     std::copy(steps.begin(), steps.end(), cdf.begin());
     const int num_distinct =
-        DrawViews<SerialLanes>(SweepParams(), Random(1, i, 0), views, &s);
+        DrawViews<SerialLanes>(params, Random(1, i, 0), views, &s);
     double sum = 0;
     int seen = 0;
     for (int k = 0; k < 4; ++k) {
