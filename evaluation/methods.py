@@ -4,7 +4,9 @@ from .processes import number_text
 
 # What COLMAP takes, and so the paper; in the program colmap_defaults says the same.
 _COLMAP = ["--PatchMatchStereo.num_iterations", "5",
-           "--PatchMatchStereo.num_samples", "15"]
+           "--PatchMatchStereo.num_geom_iterations", "5",
+           "--PatchMatchStereo.num_samples", "15",
+           "--PatchMatchStereo.first_window_step", "1"]
 _TAPA = ["--PatchMatchStereo.tapa", "1"]
 _PAPER = _COLMAP + _TAPA + ["--PatchMatchStereo.tapa_completion", "0",
                   "--PatchMatchStereo.tapa_min_textureness", "0.5"]
@@ -14,9 +16,9 @@ def _without(part):
     return ["--PatchMatchStereo.tapa_" + part, "0"]
 
 
-_MORE_ITERATIONS = ["--PatchMatchStereo.num_iterations", "3",
-                    "--PatchMatchStereo.num_geom_iterations", "2"]
-_SPARSE_WINDOW = ["--PatchMatchStereo.window_step", "2"]
+_FULL_WINDOW = ["--PatchMatchStereo.first_window_step", "1"]
+_FEWER_ITERATIONS = [*_FULL_WINDOW, "--PatchMatchStereo.num_iterations", "2"]
+_SPARSE_WINDOW = ["--PatchMatchStereo.num_iterations", "2", "--PatchMatchStereo.window_step", "2"]
 
 # Options of patch_match_stereo by name. plain and tapa are what this program does,
 # colmap and paper what COLMAP does and what the paper describes; the others leave a
@@ -26,8 +28,10 @@ METHODS = {
     "tapa": _TAPA,
     "colmap": _COLMAP,
     "colmap-tapa": _COLMAP + _TAPA,
-    "plain-3+2": _MORE_ITERATIONS,
-    "tapa-3+2": _TAPA + _MORE_ITERATIONS,
+    "plain-full": _FULL_WINDOW,
+    "tapa-full": _TAPA + _FULL_WINDOW,
+    "plain-2+2": _FEWER_ITERATIONS,
+    "tapa-2+2": _TAPA + _FEWER_ITERATIONS,
     "plain-sparse": _SPARSE_WINDOW,
     "tapa-sparse": _TAPA + _SPARSE_WINDOW,
     "tapa-weights": _TAPA + _without("texture_weighting"),
@@ -47,10 +51,12 @@ LABELS = {
     "tapa": "TAPA",
     "colmap": "COLMAP",
     "colmap-tapa": "TAPA, 5 + 5 iterations, 15 samples",
-    "plain-3+2": "plain, 3 + 2 iterations",
-    "tapa-3+2": "TAPA, 3 + 2 iterations",
-    "plain-sparse": "plain, window step 2",
-    "tapa-sparse": "TAPA, window step 2",
+    "plain-full": "plain, full windows",
+    "tapa-full": "TAPA, full windows",
+    "plain-2+2": "plain, 2 + 2 iterations, full windows",
+    "tapa-2+2": "TAPA, 2 + 2 iterations, full windows",
+    "plain-sparse": "plain, 2 + 2 iterations, window step 2",
+    "tapa-sparse": "TAPA, 2 + 2 iterations, window step 2",
     "tapa-weights": "TAPA without weights",
     "tapa-coarse": "TAPA without coarse superpixels",
     "tapa-fine": "TAPA without fine superpixels",

@@ -1,5 +1,6 @@
 #include "src/colmap/engine_options.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "src/base/failure.h"
@@ -48,14 +49,17 @@ Pass FinalPass(const PatchMatchOptions& options) {
 PatchMatchOptions PassOptions(PatchMatchOptions options, Pass pass) {
   if (options.colmap_defaults) {
     options.num_samples = 15;
-    options.num_iterations = 5;
-    options.num_geom_iterations = -1;
+    options.num_iterations = options.num_geom_iterations = 5;
+    options.window_step = options.first_window_step = 1;
     options.colmap_defaults = false;
   }
-  if (pass == Pass::kGeometric && options.num_geom_iterations != -1) {
-    options.num_iterations = options.num_geom_iterations;
+  if (pass == Pass::kGeometric) {
+    options.num_iterations =
+        std::min(options.num_iterations, options.num_geom_iterations);
   }
   if (pass != FinalPass(options)) {
+    options.window_step =
+        std::max(options.window_step, options.first_window_step);
     options.geom_consistency = false;
     options.filter = false;
     options.tapa.refinement = false;

@@ -16,7 +16,8 @@ struct HostOptions {
   bool use_gpu = true;
   int num_threads = -1;
   int seed = 0;
-  int num_geom_iterations = -1;
+  int num_geom_iterations = 2;
+  int first_window_step = 2;
   bool colmap_defaults = false;
   TapaOptions tapa;
   std::string tapa_debug;
@@ -44,15 +45,19 @@ void VisitHostOptions(Options* options, const Visitor& visit) {
          "Key of all random draws: the same seed gives the same maps, on "
          "processors with the same SIMD instructions",
          OptionRange::AtLeast(0));
-  // What counts is the pass's num_iterations.
+  // What counts is the pass's num_iterations and window_step.
   option("num_geom_iterations", &o.num_geom_iterations, false,
          "Iterations of the geometric pass, which starts from the result of "
-         "the photometric one",
-         OptionRange::From(1, 1000).OrMinusOne("num_iterations, as that has"));
+         "the photometric one; at most num_iterations",
+         OptionRange::From(1, 1000));
+  option("first_window_step", &o.first_window_step, false,
+         "window_step of the photometric pass before a geometric one; at "
+         "least window_step",
+         OptionRange::From(1, 2));
   option("colmap_defaults", &o.colmap_defaults, false,
-         "Take COLMAP's own num_iterations (5 in both passes) and num_samples "
-         "(15), whatever is given here; they cost more than twice as "
-         "much (docs/results.md)");
+         "Take COLMAP's own numbers, whatever is given here: num_iterations 5 "
+         "in both passes, num_samples 15 and window_step 1 in both; they cost "
+         "more than twice as much (docs/results.md)");
   VisitTapaOptions(&o.tapa, visit);
   option("tapa_debug", &o.tapa_debug, false,
          "Folder for pictures of every step of TAPA for every view that the "

@@ -162,7 +162,7 @@ struct Options {
   double incident_angle_sigma = 0.9;
 
   // Number of iterations of four sweeps each.
-  int num_iterations = 2;
+  int num_iterations = 3;
 
   // Geometric pass: start from the given maps and add the geometric term.
   bool geom_consistency = true;

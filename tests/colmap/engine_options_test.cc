@@ -93,16 +93,35 @@ TEST(PassOptions, EachPassHasItsIterations) {
   options.num_geom_iterations = 4;
   EXPECT_EQ(iterations(options, Pass::kPhotometric), 7);
   EXPECT_EQ(iterations(options, Pass::kGeometric), 4);
-  options.num_geom_iterations = -1;
-  EXPECT_EQ(iterations(options, Pass::kGeometric), 7);
+  // One number for both, as in COLMAP, is an upper bound.
+  options.num_iterations = 1;
+  EXPECT_EQ(iterations(options, Pass::kGeometric), 1);
   options.num_geom_iterations = 0;
   EXPECT_NE(ErrorOf(options).find("num_geom_iterations is 0"),
             std::string::npos);
 }
 
+TEST(PassOptions, OnlyAPhotometricPassBeforeAnotherHasASparserWindow) {
+  const auto step = [](const PatchMatchOptions& options, Pass pass) {
+    return EngineOptions(PassOptions(options, pass)).window_step;
+  };
+  PatchMatchOptions options;
+  EXPECT_EQ(step(options, Pass::kPhotometric), 2);
+  EXPECT_EQ(step(options, Pass::kGeometric), 1);
+  options.first_window_step = 1;
+  EXPECT_EQ(step(options, Pass::kPhotometric), 1);
+  options.window_step = 2;
+  EXPECT_EQ(step(options, Pass::kPhotometric), 2);
+  EXPECT_EQ(step(options, Pass::kGeometric), 2);
+  options = PatchMatchOptions();
+  options.geom_consistency = false;
+  EXPECT_EQ(step(options, Pass::kPhotometric), 1);
+}
+
 TEST(PassOptions, ColmapDefaultsTakeTheirPlace) {
   PatchMatchOptions options;
   options.colmap_defaults = true;
+  options.window_step = 2;
   for (const Pass pass : {Pass::kPhotometric, Pass::kGeometric}) {
     const Options result = EngineOptions(PassOptions(options, pass));
     EXPECT_EQ(result.num_iterations, 5);

@@ -607,7 +607,7 @@ class Pipeline(Case):
         self.assert_done(run_script("eth3d", "prepare", self.folder, "--scenes", "broken"))
         shutil.rmtree(self.run_path("office_dslr", "colmap"))
         result = run_script("eth3d", "run", self.folder, "--methods", "colmap", *FAST)
-        self.assert_failed(result, "1 of 2 failed", "144/broken_dslr/plain-0")
+        self.assert_failed(result, "1 of 2 failed", "144/broken_dslr/colmap-0")
         # "broken" comes first in the alphabet.
         self.assertTrue(os.path.exists(self.run_path("office_dslr", "colmap", "fused.ply")))
         record = self.read_json(self.run_path("broken_dslr", "colmap", "record.json"))

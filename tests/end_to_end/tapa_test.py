@@ -114,7 +114,7 @@ class Switches(tiny.TestCase):
             self.assertIn("%s=true" % switch, text)
         self.assertIn("\ntapa=false\n", text)
         text = text.replace("\ntapa=false\n", "\ntapa=true\n")
-        text = text.replace("\nnum_iterations=2\n", "\nnum_iterations=1\n")
+        text = text.replace("\nnum_iterations=3\n", "\nnum_iterations=1\n")
         # Options of other commands are not known to this one.
         section = text[text.index("[PatchMatchStereo]\n"):].split("\n[")[0]
         with open(self.path("project.ini"), "w") as file:
