@@ -40,8 +40,9 @@ double TotalWork(const StereoPlan& plan) {
   return total;
 }
 
+// Of the pictures of a view, named as its photograph.
 std::string PictureFolder(const PassPlan& pass, const SceneView& view) {
-  return TapaPictureFolder(pass.options.tapa_debug, view.name);
+  return colmap::JoinPaths(pass.options.tapa_debug, view.name);
 }
 
 }  // namespace

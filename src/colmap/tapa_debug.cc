@@ -17,11 +17,6 @@ std::string PathOf(const std::string& folder, const std::string& picture) {
 
 }  // namespace
 
-std::string TapaPictureFolder(const std::string& root,
-                              const std::string& image_name) {
-  return colmap::JoinPaths(root, image_name);
-}
-
 bool WriteTapaPictures(const TapaView& view, const std::string& folder,
                        const std::function<bool()>& stopped) {
   if (stopped()) {

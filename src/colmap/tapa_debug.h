@@ -8,11 +8,6 @@
 
 namespace tapa {
 
-// The folder of a view's pictures in the folder that the option tapa_debug
-// names.
-std::string TapaPictureFolder(const std::string& root,
-                              const std::string& image_name);
-
 // Draws the pictures of a view into its folder, which has to be there, as PNG.
 // Each is there under its name only when it is complete. Pictures of an earlier
 // run that are not drawn this time are removed, as they would tell of other
