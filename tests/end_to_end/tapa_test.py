@@ -239,7 +239,7 @@ class Pictures(tiny.TestCase):
 
     def test_folder_of_the_photographs(self):
         # There, the folders of the pictures have the names of photographs.
-        self.expect_refusal(self.names[0], "cannot be made",
+        self.expect_refusal(self.path("images"), "cannot be made",
                             tapa_debug=self.path("images"))
 
     def test_folder_that_cannot_be_written(self):
