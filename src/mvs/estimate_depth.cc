@@ -175,7 +175,7 @@ std::optional<Estimate> EstimateDepth(const Options& options, Problem problem,
   // The first costs take about as long as one sweep.
   const int num_steps = options.num_iterations * kSweepsPerIteration + 1;
   int step = 0;
-  const Backend::More more = [&](double done) {
+  const ProgressCallback progress = [&](double done) {
     if (control.progress) {
       control.progress((step + done) / num_steps);
     }
@@ -184,7 +184,7 @@ std::optional<Estimate> EstimateDepth(const Options& options, Problem problem,
 
   if (!InitializeEstimate(options, control, &problem) ||
       !backend->SetEstimate(std::move(problem.depth), std::move(problem.normal),
-                            more)) {
+                            progress)) {
     return std::nullopt;
   }
 
@@ -199,7 +199,7 @@ std::optional<Estimate> EstimateDepth(const Options& options, Problem problem,
     for (int sweep = 0; sweep < kSweepsPerIteration; ++sweep) {
       ++step;
       AdvanceSweepParams(options, iteration, sweep, &params);
-      if (!backend->Sweep(params, more)) {
+      if (!backend->Sweep(params, progress)) {
         return std::nullopt;
       }
     }

@@ -148,11 +148,11 @@ TEST(CudaBackend, GoesOnBesideSmallerProblems) {
   options.window_radius = 10;
   options.window_step = 2;
   emulated_cuda::Reset({});
-  const auto go_on = [](double) { return true; };
+  const auto keep_going = [](double) { return true; };
   const auto sweep = [&](Backend* backend, const SyntheticPlane& scene) {
     const Start start = StartNearTruth(scene);
-    backend->SetEstimate(start.depth, start.normal, go_on);
-    backend->Sweep(MakeSweepParams(options, 0), go_on);
+    backend->SetEstimate(start.depth, start.normal, keep_going);
+    backend->Sweep(MakeSweepParams(options, 0), keep_going);
   };
   const auto first = MakeCudaBackend(options, large.problem());
   const auto second = MakeCudaBackend(options, small.problem());

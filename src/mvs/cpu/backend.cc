@@ -32,27 +32,30 @@ class CpuBackend : public Backend {
   }
 
   bool SetEstimate(Map<float> depth, Map<Vec3> normal,
-                   const More& more) override {
+                   const ProgressCallback& progress) override {
     state_.depth = std::move(depth);
     state_.normal = std::move(normal);
     return team_.For(
         data_.height, kLinesPerBlock,
-        [&](int thread, int begin, int end, const ThreadTeam::GoOn& go_on) {
-          ComputeCosts(data_, begin, end, go_on, &state_,
+        [&](int thread, int begin, int end,
+            const ContinueCheck& should_continue) {
+          ComputeCosts(data_, begin, end, should_continue, &state_,
                        scratch_[thread].get());
         },
-        more);
+        progress);
   }
 
-  bool Sweep(const SweepParams& params, const More& more) override {
+  bool Sweep(const SweepParams& params,
+             const ProgressCallback& progress) override {
     const auto direction = static_cast<Direction>(params.index % 4);
     return team_.For(
         NumLines(data_, direction), kLinesPerBlock,
-        [&](int thread, int begin, int end, const ThreadTeam::GoOn& go_on) {
-          SweepLines(data_, params, guide_, direction, begin, end, go_on,
-                     &state_, scratch_[thread].get());
+        [&](int thread, int begin, int end,
+            const ContinueCheck& should_continue) {
+          SweepLines(data_, params, guide_, direction, begin, end,
+                     should_continue, &state_, scratch_[thread].get());
         },
-        more);
+        progress);
   }
 
   void SetTextureness(Map<float> textureness) override {

@@ -51,24 +51,27 @@ class Sources {
   uint8_t* consistent_;
 };
 
-// Asks whether to go on once for a number of pixels that takes some
+// Asks whether to continue once for a number of pixels that takes some
 // milliseconds, however large the window and the number of views.
-class Pause {
+class PeriodicCheck {
  public:
-  Pause(const ProblemData& data, const GoOn& go_on) : go_on_(go_on) {
-    constexpr double kSamplesPerPause = 1e7;
+  PeriodicCheck(const ProblemData& data, const ContinueCheck& should_continue)
+      : should_continue_(should_continue) {
+    constexpr double kSamplesPerCheck = 1e7;
     // At most: every hypothesis in every view.
     const double correlations =
         static_cast<double>(kNumHypotheses) * data.num_sources;
     interval_ = static_cast<int>(std::clamp(
-        kSamplesPerPause / (correlations * data.window.num_samples), 1.0, 1e6));
+        kSamplesPerCheck / (correlations * data.window.num_samples), 1.0, 1e6));
   }
 
-  // To be called for every pixel.
-  bool GoOnAfterPixel() { return ++num_pixels_ % interval_ != 0 || go_on_(); }
+  // To be called for every pixel. Returns whether to continue.
+  bool AfterPixel() {
+    return ++num_pixels_ % interval_ != 0 || should_continue_();
+  }
 
  private:
-  const GoOn& go_on_;
+  const ContinueCheck& should_continue_;
   int interval_;
   int num_pixels_ = 0;
 };
@@ -182,8 +185,9 @@ TAPA_INLINE PixelGuide GuideOf(const SweepGuide& guide, size_t pixel,
 
 // Returns false if told to stop on the way.
 HWY_ATTR bool SweepLine(const ProblemData& data, const SweepParams& params,
-                        const SweepGuide& guide, const Line& line, Pause* pause,
-                        SweepState* state, SweepScratch* scratch) {
+                        const SweepGuide& guide, const Line& line,
+                        PeriodicCheck* check, SweepState* state,
+                        SweepScratch* scratch) {
   const RefCamera camera = data.cameras.reference();
   const SourceCameras views = data.cameras.sources();
   const size_t mask_bytes = (views.count + 7) / 8;
@@ -229,7 +233,7 @@ HWY_ATTR bool SweepLine(const ProblemData& data, const SweepParams& params,
     }
     previous = choice.plane;
     previous_ray = ray;
-    if (!pause->GoOnAfterPixel()) {
+    if (!check->AfterPixel()) {
       return false;
     }
   }
@@ -238,21 +242,21 @@ HWY_ATTR bool SweepLine(const ProblemData& data, const SweepParams& params,
 
 void SweepLinesImpl(const ProblemData& data, const SweepParams& params,
                     const SweepGuide& guide, Direction direction, int begin,
-                    int end, const GoOn& go_on, SweepState* state,
-                    SweepScratch* scratch) {
-  Pause pause(data, go_on);
+                    int end, const ContinueCheck& should_continue,
+                    SweepState* state, SweepScratch* scratch) {
+  PeriodicCheck check(data, should_continue);
   for (int index = begin; index < end; ++index) {
     if (!SweepLine(data, params, guide, MakeLine(data, direction, index),
-                   &pause, state, scratch)) {
+                   &check, state, scratch)) {
       return;
     }
   }
 }
 
 HWY_ATTR void ComputeCostsImpl(const ProblemData& data, int begin, int end,
-                               const GoOn& go_on, SweepState* state,
-                               SweepScratch* scratch) {
-  Pause pause(data, go_on);
+                               const ContinueCheck& should_continue,
+                               SweepState* state, SweepScratch* scratch) {
+  PeriodicCheck check(data, should_continue);
   const RefCamera camera = data.cameras.reference();
   const SourceCameras views = data.cameras.sources();
   for (int row = begin; row < end; ++row) {
@@ -270,7 +274,7 @@ HWY_ATTR void ComputeCostsImpl(const ProblemData& data, int begin, int end,
             CorrelationCost(data.window, scratch->patch, data.sources[m],
                             ComputeWarp(views, m, row, col, h)));
       }
-      if (!pause.GoOnAfterPixel()) {
+      if (!check.AfterPixel()) {
         return;
       }
     }
@@ -343,16 +347,17 @@ SweepScratch::SweepScratch(const ProblemData& data) : patch(data.window) {
 
 void SweepLines(const ProblemData& data, const SweepParams& params,
                 const SweepGuide& guide, Direction direction, int begin,
-                int end, const GoOn& go_on, SweepState* state,
-                SweepScratch* scratch) {
+                int end, const ContinueCheck& should_continue,
+                SweepState* state, SweepScratch* scratch) {
   HWY_DYNAMIC_DISPATCH(SweepLinesImpl)
-  (data, params, guide, direction, begin, end, go_on, state, scratch);
+  (data, params, guide, direction, begin, end, should_continue, state, scratch);
 }
 
 void ComputeCosts(const ProblemData& data, int begin, int end,
-                  const GoOn& go_on, SweepState* state, SweepScratch* scratch) {
+                  const ContinueCheck& should_continue, SweepState* state,
+                  SweepScratch* scratch) {
   HWY_DYNAMIC_DISPATCH(ComputeCostsImpl)
-  (data, begin, end, go_on, state, scratch);
+  (data, begin, end, should_continue, state, scratch);
 }
 
 void PreparePatch(const ProblemData& data, int row, int col, Patch* patch) {

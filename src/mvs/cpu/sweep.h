@@ -2,9 +2,9 @@
 #define TAPA_SRC_MVS_CPU_SWEEP_H_
 
 #include <array>
-#include <functional>
 #include <vector>
 
+#include "src/base/progress.h"
 #include "src/mvs/cpu/problem_data.h"
 #include "src/mvs/sweep/hypotheses.h"
 #include "src/mvs/sweep/pixel_scratch.h"
@@ -45,21 +45,19 @@ inline int NumLines(const ProblemData& data, Direction direction) {
              : data.height;
 }
 
-// Asked every few milliseconds whether to go on; if not, the functions below
-// return before they are done.
-using GoOn = std::function<bool()>;
-
 // Sweeps along lines [begin, end). Different lines may be swept at the same
-// time.
+// time. This function and the next call should_continue every few milliseconds
+// and return before they are done once it returns false.
 void SweepLines(const ProblemData& data, const SweepParams& params,
                 const SweepGuide& guide, Direction direction, int begin,
-                int end, const GoOn& go_on, SweepState* state,
-                SweepScratch* scratch);
+                int end, const ContinueCheck& should_continue,
+                SweepState* state, SweepScratch* scratch);
 
 // Computes the photometric costs of the state's estimates in rows [begin, end)
 // and sets their selection probabilities to one half.
 void ComputeCosts(const ProblemData& data, int begin, int end,
-                  const GoOn& go_on, SweepState* state, SweepScratch* scratch);
+                  const ContinueCheck& should_continue, SweepState* state,
+                  SweepScratch* scratch);
 
 // The two steps of a photometric cost, for tests and benchmarks: the patch
 // around a reference pixel, and its correlation with source view m.

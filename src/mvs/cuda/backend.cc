@@ -20,9 +20,11 @@ namespace {
 // Lines are shared out among streams: while the last warps of one end a launch,
 // those of others go on.
 constexpr int kNumStreams = 4;
-// Launches of a stream that wait in line while the host looks whether to go on.
+// Launches of a stream that wait in line while the host looks whether to
+// continue.
 constexpr int kQueueLength = 4;
-// Rows whose first costs are computed before the host looks whether to go on.
+// Rows whose first costs are computed before the host looks whether to
+// continue.
 constexpr int kRowsAtATime = 128;
 
 // The images of a problem as textures.
@@ -164,7 +166,7 @@ class CudaBackend : public Backend {
   }
 
   bool SetEstimate(Map<float> depth, Map<Vec3> normal,
-                   const More& more) override {
+                   const ProgressCallback& progress) override {
     std::vector<PackedPlane> packed(plan_.pixels);
     for (size_t i = 0; i < packed.size(); ++i) {
       packed[i] = Pack({depth.data()[i], normal.data()[i]});
@@ -178,8 +180,8 @@ class CudaBackend : public Backend {
         LaunchInitialize(launch_, task_, textures_.objects(), first, last,
                          stream.get());
       });
-      if (!GoOnAfter(row / kRowsAtATime,
-                     static_cast<double>(end) / plan_.height, more)) {
+      if (!ContinuesAfter(row / kRowsAtATime,
+                          static_cast<double>(end) / plan_.height, progress)) {
         return false;
       }
     }
@@ -190,7 +192,8 @@ class CudaBackend : public Backend {
     return true;
   }
 
-  bool Sweep(const SweepParams& params, const More& more) override {
+  bool Sweep(const SweepParams& params,
+             const ProgressCallback& progress) override {
     is_downloaded_ = false;
     task_.params = params;
     has_support_ = params.filter;
@@ -212,8 +215,8 @@ class CudaBackend : public Backend {
         LaunchSweepPieces(launch_, task_, textures_.objects(), piece, end,
                           first, last, stream.get());
       });
-      if (!GoOnAfter(piece / per_launch, static_cast<double>(end) / num_pieces,
-                     more)) {
+      if (!ContinuesAfter(piece / per_launch,
+                          static_cast<double>(end) / num_pieces, progress)) {
         return false;
       }
     }
@@ -318,15 +321,16 @@ class CudaBackend : public Backend {
   }
 
   // After launch number `launch` of all streams: waits for the oldest of the
-  // last kQueueLength, while the device goes on with the others, and asks
-  // whether to go on.
-  bool GoOnAfter(int launch, double done, const More& more) {
+  // last kQueueLength, while the device works on the others, and asks whether
+  // to continue.
+  bool ContinuesAfter(int launch, double done,
+                      const ProgressCallback& progress) {
     const int slot = launch % kQueueLength;
     for (int i = 0; i < kNumStreams; ++i) {
       events_[(slot + 1) % kQueueLength][i].Wait();
       events_[slot][i].Record(streams_[i]);
     }
-    if (!more(done)) {
+    if (!progress(done)) {
       WaitForAll();
       return false;
     }
