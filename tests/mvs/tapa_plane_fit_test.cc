@@ -39,11 +39,11 @@ void AddOutliers(int count, std::mt19937* random, std::vector<Vec3>* points) {
   }
 }
 
-reference::DoublePlane ToDouble(const ScenePlane& plane) {
+reference::DoublePlane ToDouble(const Plane& plane) {
   return {{plane.normal.x, plane.normal.y, plane.normal.z}, plane.distance};
 }
 
-void ExpectPlane(const ScenePlane& plane, const reference::DoublePlane& other,
+void ExpectPlane(const Plane& plane, const reference::DoublePlane& other,
                  double tolerance) {
   EXPECT_NEAR(plane.normal.x, other.normal[0], tolerance);
   EXPECT_NEAR(plane.normal.y, other.normal[1], tolerance);

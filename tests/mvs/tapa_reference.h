@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "src/base/map.h"
-#include "src/mvs/sweep/scene_plane.h"
+#include "src/mvs/sweep/plane.h"
 #include "src/mvs/tapa/fill.h"
 #include "src/mvs/tapa/speckles.h"
 #include "src/mvs/tapa/superpixels.h"
@@ -29,7 +29,7 @@ std::vector<std::vector<Neighbor>> FindNeighbors(const Map<Rgb>& image,
                                                  const Map<uint16_t>& labels,
                                                  int count);
 
-// Points X with Dot(normal, X) = -distance, as ScenePlane.
+// Points X with Dot(normal, X) = -distance, as Plane.
 struct DoublePlane {
   double normal[3] = {0, 0, 0};
   double distance = 0;

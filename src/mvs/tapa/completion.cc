@@ -146,7 +146,7 @@ LocalPlanes FindLocalPlanes(const Problem& problem, const RefCamera& camera,
         if (labels.At(row, col) != label) {
           continue;
         }
-        const Plane plane = PlaneAt(fitted.plane, camera.Ray(row, col));
+        const DepthNormal plane = PlaneAt(fitted.plane, camera.Ray(row, col));
         if (plane.depth >= problem.depth_min &&
             plane.depth <= problem.depth_max) {
           result.depth.At(row, col) = plane.depth;

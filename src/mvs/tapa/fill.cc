@@ -65,8 +65,8 @@ void CollectSamples(const Weights& weights, const Map<uint8_t>& image,
 }
 
 // Depth 0 if the samples give no estimate.
-Plane MeanOfFullestBin(const std::vector<Sample>& samples, const Vec3& ray,
-                       double min_size) {
+DepthNormal MeanOfFullestBin(const std::vector<Sample>& samples,
+                             const Vec3& ray, double min_size) {
   const auto by_depth = [](const Sample& a, const Sample& b) {
     return a.depth < b.depth;
   };
@@ -88,7 +88,7 @@ Plane MeanOfFullestBin(const std::vector<Sample>& samples, const Vec3& ray,
       static_cast<int>(std::max_element(sizes, sizes + kNumBins) - sizes);
 
   if (sizes[fullest] < min_size) {
-    return Plane();
+    return DepthNormal();
   }
 
   double sum = 0;
@@ -103,7 +103,7 @@ Plane MeanOfFullestBin(const std::vector<Sample>& samples, const Vec3& ray,
   }
   const float norm = std::sqrt(Dot(normal, normal));
   if (!(sum > 0) || !(Dot(normal, ray) < 0)) {
-    return Plane();
+    return DepthNormal();
   }
   return {static_cast<float>(depth / sum), (1.0f / norm) * normal};
 }
@@ -116,7 +116,7 @@ int FillMissing(const FillOptions& options, const RefCamera& camera,
   struct Fill {
     int row;
     int col;
-    Plane plane;
+    DepthNormal plane;
   };
   const Weights weights(options);
   const double min_size =
@@ -135,7 +135,7 @@ int FillMissing(const FillOptions& options, const RefCamera& camera,
         if (samples.empty()) {
           continue;
         }
-        const Plane plane =
+        const DepthNormal plane =
             MeanOfFullestBin(samples, camera.Ray(row, col), min_size);
         if (plane.depth > 0) {
           fills.push_back({row, col, plane});

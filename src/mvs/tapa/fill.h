@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "src/base/map.h"
-#include "src/mvs/sweep/plane.h"
+#include "src/mvs/sweep/depth_normal.h"
 
 namespace tapa {
 
