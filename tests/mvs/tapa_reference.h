@@ -21,8 +21,8 @@ double Textureness(const Map<uint8_t>& image, int row, int col,
                    const TexturenessOptions& options);
 
 // Flood fill from every pixel that none has reached yet.
-int RemoveSpeckles(const Continuity& continuity, int max_size,
-                   Map<float>* depth);
+void RemoveSpeckles(const Continuity& continuity, int max_size,
+                    Map<float>* depth);
 
 // Scans the whole image for every pair of superpixels.
 std::vector<std::vector<Neighbor>> FindNeighbors(const Map<Rgb>& image,
@@ -44,9 +44,9 @@ DoublePlane FitLeastSquares(const std::vector<Vec3>& points);
 // them: what RANSAC approximates. Takes cubic time and more.
 int MaxNumInliers(const std::vector<Vec3>& points, double max_distance);
 
-int FillMissing(const FillOptions& options, const RefCamera& camera,
-                const Map<uint8_t>& image, Map<float>* depth,
-                Map<Vec3>* normal);
+void FillMissing(const FillOptions& options, const RefCamera& camera,
+                 const Map<uint8_t>& image, Map<float>* depth,
+                 Map<Vec3>* normal);
 
 }  // namespace tapa::reference
 

@@ -86,7 +86,6 @@ TEST(FitPlanes, FindsThePlaneOfEverySuperpixel) {
   ASSERT_EQ(exact.size(), 4u);
   for (int k = 0; k < 4; ++k) {
     EXPECT_EQ(exact[k].inlier_ratio, 1);
-    EXPECT_EQ(exact[k].num_inliers, 20 * 60);
     ExpectPlane(exact[k].plane, kPlanes[k], 1e-4);
   }
 
@@ -113,7 +112,6 @@ TEST(FitPlanes, FindsThePlaneOfEverySuperpixel) {
       FitPlanes(RelativeDistance(0.01), camera, depth, superpixels, 1);
   for (int k = 0; k < 4; ++k) {
     ExpectPlane(fits[k].plane, kPlanes[k], 2e-3);
-    EXPECT_EQ(fits[k].num_inliers, num_right[k]);
     EXPECT_FLOAT_EQ(fits[k].inlier_ratio,
                     static_cast<float>(num_right[k]) / num_points[k]);
   }

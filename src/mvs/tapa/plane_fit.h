@@ -14,7 +14,6 @@ struct FittedPlane {
   // Share of the points within the largest distance, 0 to 1; 0: there is no
   // plane.
   float inlier_ratio = 0;
-  int num_inliers = 0;
   // The largest distance of an inlier, in scene units.
   float max_distance = 0;
 };
