@@ -50,7 +50,7 @@ struct CorrelationWork {
       item.row = 40 + random() % (data.height - 80);
       item.col = 40 + random() % (data.width - 80);
       item.m = random() % data.num_sources;
-      const Plane plane = {
+      const DepthNormal plane = {
           factor(random) * scene.depth().At(item.row, item.col),
           scene.normal()};
       item.warp = ComputeWarp(

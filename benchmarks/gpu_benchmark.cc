@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -15,11 +14,11 @@
 #include <utility>
 
 #include "benchmarks/wide_scene.h"
-#include "src/mvs/backends.h"
-#include "src/mvs/cuda/device_profile.h"
 #include "src/mvs/cuda/memory_plan.h"
 #include "src/mvs/devices.h"
+#include "src/mvs/schedule.h"
 #include "src/mvs/sweep/hypotheses.h"
+#include "src/mvs/testing.h"
 
 namespace tapa {
 namespace {
@@ -50,19 +49,6 @@ constexpr Mode kModes[] = {
     {"photometric, naive", false, false, true, 1},
     {"geometric, naive", true, false, true, 1},
 };
-
-SweepParams ParamsOf(const Options& options, int index) {
-  SweepParams params;
-  params.index = index;
-  params.perturbation =
-      static_cast<float>(std::pow(2.0, -(index / 4 + index % 4 / 4.0)));
-  params.prev_prob_weight = 0.05f * index;
-  params.selection = ViewSelection::FromSigma(options.ncc_sigma);
-  params.prior = ViewPrior::FromAngles(options.min_triangulation_angle,
-                                       options.incident_angle_sigma);
-  params.geometric = options.geom_consistency;
-  return params;
-}
 
 // Every pixel tries a plane near the truth and one that is farther off.
 void SetGuide(const WideScene& scene, Backend* backend) {
@@ -101,17 +87,20 @@ Result Measure(const WideScene& scene, const Mode& mode, int device) {
   options.device = device;
   options.geom_consistency = mode.geometric;
   options.tapa.enabled = mode.tapa;
-  options.naive_kernel = mode.naive;
   Result result;
-  const auto backend =
-      MakeCudaBackend(options, scene.problem(), &result.profile);
-  SetRandomEstimate(scene.problem(), backend.get());
+  CudaSwitches switches;
+  switches.naive_kernel = mode.naive;
+  switches.profile = &result.profile;
+  const Problem& problem = scene.problem();
+  const auto backend = MakeCudaBackendForTesting(options, problem, switches);
+  const Schedule schedule(options, static_cast<int>(problem.sources.size()));
+  SetRandomEstimate(problem, backend.get());
   if (mode.tapa) {
     SetGuide(scene, backend.get());
   }
   const DeviceProfile& profile = result.profile;
   for (int i = 0; i < mode.num_sweeps; ++i) {
-    backend->Sweep(ParamsOf(options, i), [](double) { return true; });
+    backend->Sweep(schedule.At(i), [](double) { return true; });
     if (i == 0) {
       result.first_sweep_seconds =
           profile.sweep_seconds + profile.checkpoint_seconds;

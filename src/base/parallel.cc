@@ -16,8 +16,8 @@ int EffectiveNumThreads(int num_threads) {
 struct ThreadTeam::Loop {
   const int count;
   const int block_size;
-  const std::function<void(int, int, int, const GoOn&)>& run;
-  const std::function<bool(double)>& more;
+  const Block& run;
+  const ProgressCallback& progress;
 
   std::mutex mutex;
   int next = 0;
@@ -31,9 +31,9 @@ struct ThreadTeam::Loop {
     stopped = true;
   }
 
-  bool AskForMore() {
+  bool ReportProgress() {
     try {
-      stopped = stopped || !more(static_cast<double>(done) / count);
+      stopped = stopped || !progress(static_cast<double>(done) / count);
     } catch (...) {
       Fail();
     }
@@ -82,9 +82,9 @@ void ThreadTeam::Work(int thread) {
 }
 
 void ThreadTeam::RunBlocks(Loop* loop, int thread) {
-  const GoOn go_on = [loop] {
+  const ContinueCheck should_continue = [loop] {
     std::lock_guard<std::mutex> lock(loop->mutex);
-    return loop->AskForMore();
+    return loop->ReportProgress();
   };
   std::unique_lock<std::mutex> lock(loop->mutex);
   while (!loop->stopped && loop->next < loop->count) {
@@ -93,7 +93,7 @@ void ThreadTeam::RunBlocks(Loop* loop, int thread) {
     loop->next = end;
     lock.unlock();
     try {
-      loop->run(thread, begin, end, go_on);
+      loop->run(thread, begin, end, should_continue);
       lock.lock();
     } catch (...) {
       lock.lock();
@@ -102,15 +102,14 @@ void ThreadTeam::RunBlocks(Loop* loop, int thread) {
     // A block during which the loop was stopped may not be complete.
     if (!loop->stopped) {
       loop->done += end - begin;
-      loop->AskForMore();
+      loop->ReportProgress();
     }
   }
 }
 
-bool ThreadTeam::For(int count, int block_size,
-                     const std::function<void(int, int, int, const GoOn&)>& run,
-                     const std::function<bool(double)>& more) {
-  Loop loop{count, block_size, run, more, {}, 0, 0, false, nullptr};
+bool ThreadTeam::For(int count, int block_size, const Block& run,
+                     const ProgressCallback& progress) {
+  Loop loop{count, block_size, run, progress, {}, 0, 0, false, nullptr};
   {
     std::lock_guard<std::mutex> lock(mutex_);
     loop_ = &loop;

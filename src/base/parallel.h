@@ -2,22 +2,25 @@
 #define TAPA_SRC_BASE_PARALLEL_H_
 
 #include <condition_variable>
+#include <cstdint>
 #include <functional>
 #include <mutex>
 #include <thread>
 #include <vector>
 
+#include "src/base/progress.h"
+
 namespace tapa {
 
-// Number of threads that `num_threads` asks for: itself, or one per core where
-// it is not positive.
+// num_threads, if <= 0 the number of cores.
 int EffectiveNumThreads(int num_threads);
 
 // Threads that share out ranges of indices. The calling thread is one of them.
 class ThreadTeam {
  public:
-  // Says, to whoever runs a block, whether to go on.
-  using GoOn = std::function<bool()>;
+  // Works on the indices [begin, end): run(thread, begin, end,
+  // should_continue).
+  using Block = std::function<void(int, int, int, const ContinueCheck&)>;
 
   // Makes do with fewer threads where the system does not give that many.
   explicit ThreadTeam(int num_threads);
@@ -25,16 +28,15 @@ class ThreadTeam {
 
   int size() const { return static_cast<int>(threads_.size()) + 1; }
 
-  // Calls run(thread, begin, end, go_on) for blocks of at most block_size
-  // indices that together cover [0, count), each thread one block at a time,
-  // and returns when all are done. After every block, and whenever `run` calls
-  // go_on(), it calls more(share done) from one thread at a time; once that
-  // returns false, no further block is started, and go_on() returns false, upon
-  // which `run` should return. Returns whether all blocks ran. An exception in
-  // `run` or `more` ends the rest and is thrown here.
-  bool For(int count, int block_size,
-           const std::function<void(int, int, int, const GoOn&)>& run,
-           const std::function<bool(double)>& more);
+  // Calls `run` for blocks of at most block_size indices that together cover
+  // [0, count), each thread one block at a time, and returns when all are done.
+  // After every block, and whenever `run` calls should_continue(), it calls
+  // `progress` from one thread at a time; once that returns false, no further
+  // block is started, and should_continue() returns false, upon which `run`
+  // should return. Returns whether all blocks ran. An exception in `run` or
+  // `progress` ends the rest and is thrown here.
+  bool For(int count, int block_size, const Block& run,
+           const ProgressCallback& progress);
 
  private:
   struct Loop;

@@ -16,7 +16,7 @@ void ParallelFor(size_t count, size_t block_size, ThreadTeam* team,
   const size_t num_blocks = (count + block_size - 1) / block_size;
   team->For(
       static_cast<int>(num_blocks), 1,
-      [&](int thread, int begin, int end, const ThreadTeam::GoOn&) {
+      [&](int thread, int begin, int end, const ContinueCheck&) {
         const size_t last = std::min(count, end * block_size);
         for (size_t i = begin * block_size; i < last; ++i) run(thread, i);
       },

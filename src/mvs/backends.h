@@ -9,8 +9,6 @@
 
 namespace tapa {
 
-struct DeviceProfile;
-
 // The backends there are.
 
 // options.num_threads threads of the CPU, with its widest SIMD instructions.
@@ -18,12 +16,9 @@ std::unique_ptr<Backend> MakeCpuBackend(const Options& options,
                                         const Problem& problem);
 
 // GPU options.device. Throws DeviceError, as all functions of this backend do;
-// the problem can be computed by another one then. profile
-// (cuda/device_profile.h): not null: is filled from now on, for which the
-// device waits between kernels.
+// the problem can be computed by another one then.
 std::unique_ptr<Backend> MakeCudaBackend(const Options& options,
-                                         const Problem& problem,
-                                         DeviceProfile* profile = nullptr);
+                                         const Problem& problem);
 
 }  // namespace tapa
 

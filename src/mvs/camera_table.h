@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "src/mvs/problem.h"
-#include "src/mvs/sweep/plane.h"
+#include "src/mvs/sweep/depth_normal.h"
 #include "src/mvs/sweep/source_cameras.h"
 
 namespace tapa {

@@ -16,6 +16,8 @@ struct Control {
   std::function<bool()> stopped;
   // Filled with what TAPA did, if it runs.
   TapaRecord* record = nullptr;
+
+  bool IsStopped() const { return stopped && stopped(); }
 };
 
 }  // namespace tapa

@@ -1,21 +1,20 @@
 #include "src/mvs/estimate_depth.h"
 
-#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
+#include "src/base/depth.h"
 #include "src/mvs/backends.h"
 #include "src/mvs/camera_table.h"
 #include "src/mvs/cpu/memory_plan.h"
+#include "src/mvs/schedule.h"
 #include "src/mvs/sweep/hypotheses.h"
 #include "src/mvs/tapa/stages.h"
 
 namespace tapa {
 namespace {
-
-constexpr int kSweepsPerIteration = 4;
 
 // Textureness, labels and planes of two segmentations, and the chosen
 // hypothesis: 13; between iterations a depth map (4), connected regions (8) and
@@ -92,14 +91,14 @@ bool InitializeEstimate(const Options& options, const Control& control,
     problem->normal = Map<Vec3>(image.width(), image.height());
   }
   for (int row = 0; row < image.height(); ++row) {
-    if (control.stopped && control.stopped()) {
+    if (control.IsStopped()) {
       return false;
     }
     for (int col = 0; col < image.width(); ++col) {
       const Vec3 ray = camera.Ray(row, col);
       float& depth = problem->depth.At(row, col);
       Vec3& normal = problem->normal.At(row, col);
-      if (depth > 0 && std::isfinite(depth) && Dot(normal, ray) < 0) {
+      if (IsDepth(depth) && Dot(normal, ray) < 0) {
         continue;
       }
       const Random random(options.seed,
@@ -112,54 +111,27 @@ bool InitializeEstimate(const Options& options, const Control& control,
   return true;
 }
 
-float CosineOfDegrees(double degrees) {
-  return static_cast<float>(std::cos(degrees * 3.14159265358979323846 / 180));
-}
+// The progress of steps that take about the same time each, as one.
+class StepProgress {
+ public:
+  StepProgress(const Control& control, int num_steps)
+      : control_(control), num_steps_(num_steps) {}
 
-// Parameters that all sweeps have in common.
-SweepParams MakeSweepParams(const Options& options, const Problem& problem) {
-  SweepParams params;
-  params.seed = options.seed;
-  params.num_samples = options.num_samples;
-  params.window_radius = static_cast<float>(options.window_radius);
-  params.selection = ViewSelection::FromSigma(options.ncc_sigma);
-  params.prior = ViewPrior::FromAngles(options.min_triangulation_angle,
-                                       options.incident_angle_sigma);
-  params.geometric = options.geom_consistency;
-  params.geom_weight = static_cast<float>(options.geom_consistency_regularizer);
-  params.geom_max_cost = static_cast<float>(options.geom_consistency_max_cost);
-  params.filter_min_prob = params.selection.Emission(
-      static_cast<float>(1.0 - options.filter_min_ncc));
-  params.filter_cos_min_triangulation =
-      CosineOfDegrees(options.filter_min_triangulation_angle);
-  params.filter_geom_max_cost =
-      static_cast<float>(options.filter_geom_consistency_max_cost);
-  params.filter_min_num_consistent =
-      std::min(options.filter_min_num_consistent,
-               static_cast<int>(problem.sources.size()));
-  // TAPA looks at the filter's verdict itself; patches without texture have no
-  // photometric support, so it does not count.
-  if (options.tapa.enabled) {
-    params.filter_min_num_consistent = 0;
-    if (options.geom_consistency) {
-      params.filter_min_prob = 0;
-    }
+  // For the next step.
+  ProgressCallback Next() {
+    return [this, step = next_++](double done) {
+      if (control_.progress) {
+        control_.progress((step + done) / num_steps_);
+      }
+      return !control_.IsStopped();
+    };
   }
-  return params;
-}
 
-// Sets what changes from sweep to sweep: random changes shrink by half in every
-// iteration, and trust in the previous selection grows linearly from 0.
-void AdvanceSweepParams(const Options& options, int iteration, int sweep,
-                        SweepParams* params) {
-  params->index = iteration * kSweepsPerIteration + sweep;
-  params->perturbation = static_cast<float>(
-      std::pow(2.0, -(iteration + sweep / double{kSweepsPerIteration})));
-  const int num_sweeps = options.num_iterations * kSweepsPerIteration;
-  params->prev_prob_weight = static_cast<float>(params->index) / num_sweeps;
-  params->filter = (options.filter || options.tapa.enabled) &&
-                   params->index + 1 == static_cast<uint32_t>(num_sweeps);
-}
+ private:
+  const Control& control_;
+  const int num_steps_;
+  int next_ = 0;
+};
 
 }  // namespace
 
@@ -172,19 +144,16 @@ std::optional<Estimate> EstimateDepth(const Options& options, Problem problem,
                                          ? MakeCpuBackend(options, problem)
                                          : MakeCudaBackend(options, problem);
 
+  const Schedule schedule(options, static_cast<int>(problem.sources.size()));
   // The first costs take about as long as one sweep.
-  const int num_steps = options.num_iterations * kSweepsPerIteration + 1;
-  int step = 0;
-  const Backend::More more = [&](double done) {
-    if (control.progress) {
-      control.progress((step + done) / num_steps);
-    }
-    return !control.stopped || !control.stopped();
-  };
-
-  if (!InitializeEstimate(options, control, &problem) ||
-      !backend->SetEstimate(std::move(problem.depth), std::move(problem.normal),
-                            more)) {
+  StepProgress progress(control, schedule.num_sweeps() + 1);
+  if (!InitializeEstimate(options, control, &problem)) {
+    return std::nullopt;
+  }
+  // What follows sees a problem without maps to start from.
+  if (!backend->SetEstimate(std::exchange(problem.depth, {}),
+                            std::exchange(problem.normal, {}),
+                            progress.Next())) {
     return std::nullopt;
   }
 
@@ -194,17 +163,12 @@ std::optional<Estimate> EstimateDepth(const Options& options, Problem problem,
     tapa->Begin(backend.get());
   }
 
-  SweepParams params = MakeSweepParams(options, problem);
-  for (int iteration = 0; iteration < options.num_iterations; ++iteration) {
-    for (int sweep = 0; sweep < kSweepsPerIteration; ++sweep) {
-      ++step;
-      AdvanceSweepParams(options, iteration, sweep, &params);
-      if (!backend->Sweep(params, more)) {
-        return std::nullopt;
-      }
+  for (int i = 0; i < schedule.num_sweeps(); ++i) {
+    if (tapa && i > 0 && i % Schedule::kSweepsPerIteration == 0) {
+      tapa->ProposePlanes(i / Schedule::kSweepsPerIteration, backend.get());
     }
-    if (tapa && iteration + 1 < options.num_iterations) {
-      tapa->ProposePlanes(iteration + 1, backend.get());
+    if (!backend->Sweep(schedule.At(i), progress.Next())) {
+      return std::nullopt;
     }
   }
   Estimate estimate = backend->TakeResult();
@@ -212,7 +176,7 @@ std::optional<Estimate> EstimateDepth(const Options& options, Problem problem,
   backend.reset();
   if (tapa) {
     tapa->Refine(&estimate);
-    if (control.stopped && control.stopped()) {
+    if (control.IsStopped()) {
       return std::nullopt;
     }
     if (control.record != nullptr) {

@@ -189,10 +189,6 @@ struct Options {
 
   // Number of the GPU that computes, as in devices.h; -1: the CPU does.
   int device = -1;
-  // For comparisons: on a GPU, sample source images as precisely as the CPU
-  // does, or run one thread per line.
-  bool precise_textures = false;
-  bool naive_kernel = false;
   // Number of threads of the CPU backend; -1: one per core.
   int num_threads = -1;
   // Key of all random draws. The same seed gives the same maps.

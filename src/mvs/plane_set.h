@@ -5,17 +5,23 @@
 #include <vector>
 
 #include "src/base/map.h"
-#include "src/mvs/sweep/scene_plane.h"
+#include "src/mvs/sweep/guide.h"
 
 namespace tapa {
 
 // Planes, one of which every pixel may try as a hypothesis.
 struct PlaneSet {
-  static constexpr uint16_t kNone = 0xFFFF;
+  static constexpr uint16_t kNone = PlaneTable::kNone;
 
-  std::vector<ScenePlane> planes;
+  std::vector<Plane> planes;
   // Which plane each pixel tries; kNone: none. Empty: no pixel tries any.
   Map<uint16_t> index;
+
+  // Points into this set.
+  PlaneTable Table() const {
+    return index.empty() ? PlaneTable()
+                         : PlaneTable{planes.data(), index.data()};
+  }
 };
 
 }  // namespace tapa

@@ -24,8 +24,8 @@ struct Problem {
   const Map<Rgb>* reference_color = nullptr;
   // Where the geometric pass starts: depth in scene units and unit normals in
   // the reference camera's frame, both of the reference image's size. Pixels
-  // whose depth is not positive or whose normal faces away from the camera
-  // start at random. Not used by the photometric pass.
+  // without a depth (IsDepth) or whose normal faces away from the camera start
+  // at random. Not used by the photometric pass.
   Map<float> depth;
   Map<Vec3> normal;
 };
@@ -39,9 +39,10 @@ struct Estimate {
   // Probability that source view m sees a pixel, 0 to 1, at
   // [pixel * sources + m], in fixed point: value / 65535.
   UninitializedVector<uint16_t> selection_prob;
-  // With Options::filter or TAPA: bit m % 8 of byte [pixel * ceil(sources / 8)
-  // + m / 8] says whether source view m supports the estimate. TAPA's geometric
-  // pass looks at depths and angles only, not at selection probabilities.
+  // With Options::filter or TAPA: which source views are consistent with the
+  // estimate, ConsistencyMaskBytes per pixel (sweep/consistency_mask.h). TAPA's
+  // geometric pass looks at depths and angles only, not at selection
+  // probabilities.
   std::vector<uint8_t> consistent;
   // With TAPA: the hypothesis (sweep/hypotheses.h) that each pixel chose last.
   Map<uint8_t> chosen;

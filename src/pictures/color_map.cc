@@ -7,10 +7,10 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "src/base/depth.h"
+
 namespace tapa {
 namespace {
-
-bool IsDepth(float value) { return std::isfinite(value) && value > 0; }
 
 // The 256 colours of the TURBO scale, blue to red.
 std::vector<cv::Vec3b> TurboColors() {

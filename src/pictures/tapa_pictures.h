@@ -62,7 +62,7 @@ std::vector<NamedPicture> DrawTapaPictures(const TapaView& view);
 // The colour of a hypothesis (Hypothesis in sweep/hypotheses.h).
 cv::Vec3b HypothesisColor(int hypothesis);
 
-// The colour of an origin (Origin in stages.h).
+// The colour of an origin (Origin in completion.h).
 cv::Vec3b OriginColor(int origin);
 
 inline const cv::Vec3b kBorderColor(0, 255, 255);

@@ -25,8 +25,8 @@ void ForEachInstructionSet(const Check& check) {
   hwy::GetChosenTarget().Update(hwy::SupportedTargets());
 }
 
-float EngineCost(const ProblemData& data, int row, int col, const Plane& plane,
-                 int m, Patch* patch) {
+float EngineCost(const ProblemData& data, int row, int col,
+                 const DepthNormal& plane, int m, Patch* patch) {
   const RefCamera camera = data.cameras.reference();
   PreparePatch(data, row, col, patch);
   return PhotometricCost(
@@ -38,11 +38,11 @@ float EngineCost(const ProblemData& data, int row, int col, const Plane& plane,
 
 // Not too close to edge-on, where the window reaches beyond the horizon and
 // rounding is magnified without bounds.
-Plane RandomPlane(const Problem& problem, const Vec3& ray,
-                  std::mt19937* random) {
+DepthNormal RandomPlane(const Problem& problem, const Vec3& ray,
+                        std::mt19937* random) {
   std::uniform_real_distribution<float> depth(0.5f * problem.depth_min,
                                               2.0f * problem.depth_max);
-  Plane plane;
+  DepthNormal plane;
   do {
     plane = {depth(*random), RandomNormal(Random((*random)(), 0, 0), ray)};
   } while (Dot(plane.normal, ray) > -0.3f);
@@ -65,7 +65,8 @@ void CompareCosts(const Options& options, const Problem& problem) {
   int num_informative = 0;
   for (int row = 0; row < data.height; row += 3) {
     for (int col = 0; col < data.width; col += 2) {
-      const Plane plane = RandomPlane(problem, camera.Ray(row, col), &random);
+      const DepthNormal plane =
+          RandomPlane(problem, camera.Ray(row, col), &random);
       for (int m = 0; m < data.num_sources; ++m) {
         const double expected =
             reference::PhotometricCost(options, problem, row, col, plane, m);
@@ -125,7 +126,7 @@ TEST(Correlation, IsZeroAtTheTruthAndTwoWithoutTexture) {
   {
     const ProblemData data(Options(), problem);
     Patch patch(data.window);
-    const Plane truth = {scene.depth().At(20, 24), scene.normal()};
+    const DepthNormal truth = {scene.depth().At(20, 24), scene.normal()};
     EXPECT_LT(EngineCost(data, 20, 24, truth, 0, &patch), 0.01f);
   }
   const Map<uint8_t> flat(48, 40, 200);
@@ -133,13 +134,13 @@ TEST(Correlation, IsZeroAtTheTruthAndTwoWithoutTexture) {
   {
     const ProblemData data(Options(), problem);
     Patch patch(data.window);
-    const Plane truth = {scene.depth().At(20, 24), scene.normal()};
+    const DepthNormal truth = {scene.depth().At(20, 24), scene.normal()};
     EXPECT_EQ(EngineCost(data, 20, 24, truth, 0, &patch), kMaxCost);
   }
   problem.reference.image = &flat;
   const ProblemData data(Options(), problem);
   Patch patch(data.window);
-  const Plane truth = {scene.depth().At(20, 24), scene.normal()};
+  const DepthNormal truth = {scene.depth().At(20, 24), scene.normal()};
   EXPECT_EQ(EngineCost(data, 20, 24, truth, 1, &patch), kMaxCost);
 }
 

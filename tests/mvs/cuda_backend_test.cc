@@ -14,6 +14,7 @@
 #include "src/mvs/device_trial.h"
 #include "src/mvs/devices.h"
 #include "src/mvs/estimate_depth.h"
+#include "src/mvs/schedule.h"
 #include "tests/mvs/emulated_cuda/emulator.h"
 #include "tests/mvs/sweep_start.h"
 #include "tests/mvs/synthetic.h"
@@ -148,11 +149,12 @@ TEST(CudaBackend, GoesOnBesideSmallerProblems) {
   options.window_radius = 10;
   options.window_step = 2;
   emulated_cuda::Reset({});
-  const auto go_on = [](double) { return true; };
+  const auto keep_going = [](double) { return true; };
   const auto sweep = [&](Backend* backend, const SyntheticPlane& scene) {
     const Start start = StartNearTruth(scene);
-    backend->SetEstimate(start.depth, start.normal, go_on);
-    backend->Sweep(MakeSweepParams(options, 0), go_on);
+    backend->SetEstimate(start.depth, start.normal, keep_going);
+    backend->Sweep(Schedule(options, scene.problem().sources.size()).At(0),
+                   keep_going);
   };
   const auto first = MakeCudaBackend(options, large.problem());
   const auto second = MakeCudaBackend(options, small.problem());

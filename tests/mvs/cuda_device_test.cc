@@ -16,6 +16,8 @@
 #include "src/mvs/device_error.h"
 #include "src/mvs/devices.h"
 #include "src/mvs/estimate_depth.h"
+#include "src/mvs/schedule.h"
+#include "src/mvs/testing.h"
 #include "tests/mvs/sweep_start.h"
 #include "tests/mvs/synthetic.h"
 
@@ -63,26 +65,27 @@ Options SweepOptions(bool geometric) {
 
 bool KeepGoing(double) { return true; }
 
-// One iteration of four sweeps, the last with the filter.
-Estimate RunSweeps(Backend* backend, const Options& options, const Start& start,
-                   int num_sweeps) {
+// The first sweeps; the last of several checks consistency.
+Estimate RunSweeps(Backend* backend, const Options& options,
+                   const Problem& problem, const Start& start, int num_sweeps) {
+  const Schedule schedule(options, static_cast<int>(problem.sources.size()));
   backend->SetEstimate(start.depth, start.normal, KeepGoing);
   for (int i = 0; i < num_sweeps; ++i) {
-    SweepParams params = MakeSweepParams(options, i);
-    params.window_radius = static_cast<float>(options.window_radius);
-    params.filter_min_prob = params.selection.Emission(0.9f);
-    params.filter_cos_min_triangulation = std::cos(0.05f);
-    params.filter = i + 1 == num_sweeps && num_sweeps > 1;
+    SweepParams params = schedule.At(i);
+    params.check_consistency = i + 1 == num_sweeps && num_sweeps > 1;
     backend->Sweep(params, KeepGoing);
   }
   return backend->TakeResult();
 }
 
 // Costs after one sweep.
-std::vector<uint16_t> CostsAfterSweep(Backend* backend, const Options& options,
+std::vector<uint16_t> CostsAfterSweep(BackendForTesting* backend,
+                                      const Options& options,
+                                      const Problem& problem,
                                       const Start& start) {
+  const Schedule schedule(options, static_cast<int>(problem.sources.size()));
   backend->SetEstimate(start.depth, start.normal, KeepGoing);
-  backend->Sweep(MakeSweepParams(options, 0), KeepGoing);
+  backend->Sweep(schedule.At(0), KeepGoing);
   return backend->Costs();
 }
 
@@ -93,11 +96,14 @@ TEST_F(CudaDeviceTest, HasTheCostsOfTheCpu) {
   Options options = SweepOptions(true);
   const Start start = StartNearTruth(scene);
   const std::vector<uint16_t> expected =
-      CostsAfterSweep(MakeCpuBackend(options, problem).get(), options, start);
+      CostsAfterSweep(MakeCpuBackendForTesting(options, problem).get(), options,
+                      problem, start);
   options.device = FirstDevice();
-  options.precise_textures = true;
-  const std::vector<uint16_t> actual =
-      CostsAfterSweep(MakeCudaBackend(options, problem).get(), options, start);
+  CudaSwitches switches;
+  switches.precise_textures = true;
+  const std::vector<uint16_t> actual = CostsAfterSweep(
+      MakeCudaBackendForTesting(options, problem, switches).get(), options,
+      problem, start);
   ASSERT_EQ(actual.size(), expected.size());
   const int tolerance = EncodeCost(1e-3f) - EncodeCost(0);
   size_t num_same = 0;
@@ -129,13 +135,15 @@ TEST_F(CudaDeviceTest, MakesTheChoicesOfTheCpu) {
         geometric ? scene.GeometricProblem() : scene.problem();
     Options options = SweepOptions(geometric);
     const Start start = StartNearTruth(scene);
-    const Estimate expected =
-        RunSweeps(MakeCpuBackend(options, problem).get(), options, start, 1);
+    const Estimate expected = RunSweeps(MakeCpuBackend(options, problem).get(),
+                                        options, problem, start, 1);
     options.device = FirstDevice();
     for (const bool precise : {true, false}) {
-      options.precise_textures = precise;
+      CudaSwitches switches;
+      switches.precise_textures = precise;
       const Estimate actual =
-          RunSweeps(MakeCudaBackend(options, problem).get(), options, start, 1);
+          RunSweeps(MakeCudaBackendForTesting(options, problem, switches).get(),
+                    options, problem, start, 1);
       const double same =
           ShareOfSameDepths(actual.depth, expected.depth, 1e-4f);
       RecordProperty("same_choices", std::to_string(same));
@@ -160,35 +168,40 @@ TEST_F(CudaDeviceTest, KernelsAgree) {
     options.window_radius = c.window_radius;
     options.window_step = c.window_step;
     const Start start = StartNearTruth(scene);
-    const Estimate expected = RunSweeps(
-        MakeCpuBackend(options, scene.problem()).get(), options, start, 1);
+    const Problem& problem = scene.problem();
+    const Estimate expected = RunSweeps(MakeCpuBackend(options, problem).get(),
+                                        options, problem, start, 1);
     options.device = FirstDevice();
-    const Estimate actual = RunSweeps(
-        MakeCudaBackend(options, scene.problem()).get(), options, start, 1);
+    const Estimate actual = RunSweeps(MakeCudaBackend(options, problem).get(),
+                                      options, problem, start, 1);
     EXPECT_GE(ShareOfSameDepths(actual.depth, expected.depth, 1e-4f), 0.95)
         << c.num_sources << " " << c.window_radius << " " << c.window_step;
     if (c.num_sources <= 32 && c.window_radius == 5) {
-      options.naive_kernel = true;
-      const Estimate naive = RunSweeps(
-          MakeCudaBackend(options, scene.problem()).get(), options, start, 1);
+      CudaSwitches switches;
+      switches.naive_kernel = true;
+      const Estimate naive =
+          RunSweeps(MakeCudaBackendForTesting(options, problem, switches).get(),
+                    options, problem, start, 1);
       EXPECT_GE(ShareOfSameDepths(naive.depth, actual.depth, 1e-4f), 0.99);
     }
   }
 }
 
-// Support, choices and probabilities after the filter.
-TEST_F(CudaDeviceTest, ReportsSupport) {
+// Masks, choices and probabilities after the last sweep.
+TEST_F(CudaDeviceTest, ReportsConsistentViews) {
   const SyntheticPlane scene = MakeScene(9);
   Options options = SweepOptions(true);
-  options.precise_textures = true;
+  CudaSwitches switches;
+  switches.precise_textures = true;
   options.tapa.enabled = true;
   const Start start = StartNearTruth(scene);
   const Problem problem = scene.GeometricProblem();
-  const Estimate expected =
-      RunSweeps(MakeCpuBackend(options, problem).get(), options, start, 2);
+  const Estimate expected = RunSweeps(MakeCpuBackend(options, problem).get(),
+                                      options, problem, start, 2);
   options.device = FirstDevice();
   const Estimate actual =
-      RunSweeps(MakeCudaBackend(options, problem).get(), options, start, 2);
+      RunSweeps(MakeCudaBackendForTesting(options, problem, switches).get(),
+                options, problem, start, 2);
   ASSERT_EQ(actual.consistent.size(), expected.consistent.size());
   ASSERT_EQ(actual.selection_prob.size(), expected.selection_prob.size());
   ASSERT_EQ(actual.chosen.size(), expected.chosen.size());
@@ -212,7 +225,7 @@ TEST_F(CudaDeviceTest, IsDeterministic) {
   const Start start = StartNearTruth(scene);
   const auto run = [&] {
     return RunSweeps(MakeCudaBackend(options, scene.problem()).get(), options,
-                     start, 4);
+                     scene.problem(), start, 4);
   };
   const Estimate a = run();
   const Estimate b = run();
@@ -229,7 +242,7 @@ TEST_F(CudaDeviceTest, StopsSoon) {
   const Start start = StartNearTruth(scene);
   backend->SetEstimate(start.depth, start.normal, KeepGoing);
   int num_calls = 0;
-  EXPECT_FALSE(backend->Sweep(MakeSweepParams(options, 0), [&](double) {
+  EXPECT_FALSE(backend->Sweep(Schedule(options, 6).At(0), [&](double) {
     ++num_calls;
     return false;
   }));

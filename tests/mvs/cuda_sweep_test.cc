@@ -7,10 +7,11 @@
 #include <cstring>
 #include <random>
 
-#include "src/mvs/backends.h"
 #include "src/mvs/cuda/layout.h"
-#include "src/mvs/cuda/packed_plane.h"
+#include "src/mvs/cuda/packed_depth_normal.h"
 #include "src/mvs/cuda/sweep_task.h"
+#include "src/mvs/schedule.h"
+#include "src/mvs/testing.h"
 #include "tests/mvs/emulated_cuda/emulator.h"
 #include "tests/mvs/sweep_start.h"
 #include "tests/mvs/synthetic.h"
@@ -54,9 +55,8 @@ struct CudaScene {
     options.num_iterations = 5;
     options.seed = 11;
     options.tapa.enabled = c.guided || c.filter;
-    params = MakeSweepParams(options, c.index);
-    params.window_radius = static_cast<float>(c.window_radius);
-    params.filter = c.filter;
+    params = Schedule(options, c.num_sources).At(c.index);
+    params.check_consistency = c.filter;
     params.filter_min_prob = params.selection.Emission(0.9f);
     params.filter_cos_min_triangulation = std::cos(0.05f);
     params.filter_min_num_consistent = std::min(2, c.num_sources);
@@ -85,7 +85,7 @@ struct CudaScene {
   const Start start;
   Options options;
   SweepParams params;
-  SweepGuide guide;
+  GuideMaps guide;
 };
 
 bool KeepGoing(double) { return true; }
@@ -97,7 +97,7 @@ struct Outcome {
   Estimate estimate;
 };
 
-Outcome Run(const CudaScene& s, std::unique_ptr<Backend> backend) {
+Outcome Run(const CudaScene& s, std::unique_ptr<BackendForTesting> backend) {
   Outcome outcome;
   if (s.options.tapa.enabled) {
     backend->SetTextureness(s.guide.textureness);
@@ -112,7 +112,7 @@ Outcome Run(const CudaScene& s, std::unique_ptr<Backend> backend) {
 }
 
 Outcome RunOnCpu(const CudaScene& s) {
-  return Run(s, MakeCpuBackend(s.options, s.problem));
+  return Run(s, MakeCpuBackendForTesting(s.options, s.problem));
 }
 
 // The kernels that a problem can be swept by.
@@ -122,10 +122,11 @@ Outcome RunOnGpu(const CudaScene& s, Kernel kernel,
                  const emulated_cuda::Settings& settings) {
   Options options = s.options;
   options.device = 0;
-  options.precise_textures = kernel == Kernel::kPrecise;
-  options.naive_kernel = kernel == Kernel::kNaive;
+  CudaSwitches switches;
+  switches.precise_textures = kernel == Kernel::kPrecise;
+  switches.naive_kernel = kernel == Kernel::kNaive;
   emulated_cuda::Reset(settings);
-  return Run(s, MakeCudaBackend(options, s.problem));
+  return Run(s, MakeCudaBackendForTesting(options, s.problem, switches));
 }
 
 template <class Values>
@@ -156,7 +157,7 @@ double ShareOfSameChoices(const Estimate& actual, const Estimate& expected) {
 }
 
 // After the last sweep.
-void ExpectSameSupport(const Estimate& actual, const Estimate& expected) {
+void ExpectSameMasks(const Estimate& actual, const Estimate& expected) {
   const size_t count = expected.depth.size();
   const size_t mask_bytes = expected.consistent.size() / count;
   ASSERT_EQ(actual.consistent.size(), expected.consistent.size());
@@ -185,7 +186,7 @@ void ExpectAgrees(const CudaCase& c, bool exact, const Outcome& actual,
       ShareWithin(actual.first_costs, expected.first_costs, kCostTolerance),
       exact ? 0.999 : 0.5);
   if (c.filter) {
-    ExpectSameSupport(actual.estimate, expected.estimate);
+    ExpectSameMasks(actual.estimate, expected.estimate);
     return;
   }
   // A draw or a tie that falls to the other side spreads to the next pixels of
@@ -214,7 +215,7 @@ TEST_P(CudaSweepTest, AgreesWithCpu) {
   // Such that launches sweep two of three pieces, or all.
   settings.kilohertz = 150000;
   ExpectAgrees(c, true, RunOnGpu(s, Kernel::kUsual, settings), expected);
-  if (CommonSizes::Fits(WindowShape::FromOptions(s.options), c.num_sources)) {
+  if (CommonSizes::Fits(WindowShape(s.options), c.num_sources)) {
     ExpectAgrees(c, true, RunOnGpu(s, Kernel::kNaive, settings), expected);
   }
 }

@@ -328,7 +328,7 @@ TEST(ThreadTeam, CoversEveryIndexOnce) {
     double last = 0;
     EXPECT_TRUE(team.For(
         count, 8,
-        [&](int thread, int begin, int end, const ThreadTeam::GoOn&) {
+        [&](int thread, int begin, int end, const ContinueCheck&) {
           EXPECT_GE(thread, 0);
           EXPECT_LT(thread, 3);
           for (int i = begin; i < end; ++i) {
@@ -350,26 +350,26 @@ TEST(ThreadTeam, StopsAndPassesErrorsOn) {
   ThreadTeam team(2);
   std::atomic<int> num_run{0};
   EXPECT_FALSE(team.For(
-      1000, 1, [&](int, int, int, const ThreadTeam::GoOn&) { ++num_run; },
+      1000, 1, [&](int, int, int, const ContinueCheck&) { ++num_run; },
       [&](double) { return false; }));
   EXPECT_LE(num_run, 4);
   EXPECT_THROW(team.For(
                    10, 1,
-                   [](int, int, int, const ThreadTeam::GoOn&) {
+                   [](int, int, int, const ContinueCheck&) {
                      throw std::runtime_error("broken");
                    },
                    [](double) { return true; }),
                std::runtime_error);
   EXPECT_THROW(team.For(
-                   10, 1, [](int, int, int, const ThreadTeam::GoOn&) {},
+                   10, 1, [](int, int, int, const ContinueCheck&) {},
                    [](double) -> bool { throw std::runtime_error("broken"); }),
                std::runtime_error);
   // A block that takes long hears of the stop.
   std::atomic<bool> stop{false};
   EXPECT_FALSE(team.For(
       2, 1,
-      [&](int thread, int, int, const ThreadTeam::GoOn& go_on) {
-        while (go_on()) {
+      [&](int thread, int, int, const ContinueCheck& should_continue) {
+        while (should_continue()) {
           if (thread == 0) {
             stop = true;
           }
@@ -378,7 +378,7 @@ TEST(ThreadTeam, StopsAndPassesErrorsOn) {
       [&](double) { return !stop.load(); }));
   // The team works on.
   EXPECT_TRUE(team.For(
-      5, 1, [](int, int, int, const ThreadTeam::GoOn&) {},
+      5, 1, [](int, int, int, const ContinueCheck&) {},
       [](double) { return true; }));
 }
 

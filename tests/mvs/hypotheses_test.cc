@@ -94,10 +94,11 @@ TEST(Hypotheses, PerturbedDepthStaysInItsRange) {
   EXPECT_GT(highest, 1.24f);
 }
 
-TEST(Plane, PropagationStaysOnThePlane) {
+TEST(DepthNormal, PropagationStaysOnThePlane) {
   const RefCamera camera = {1 / 50.0f, 1 / 55.0f, -0.4f, -0.3f};
   const Vec3 from = camera.Ray(10, 12);
-  const Plane plane = {3.0f, (1 / std::sqrt(1.13f)) * Vec3{0.3f, -0.2f, -1}};
+  const DepthNormal plane = {3.0f,
+                             (1 / std::sqrt(1.13f)) * Vec3{0.3f, -0.2f, -1}};
   for (int row = 0; row < 40; row += 7) {
     for (int col = 0; col < 50; col += 9) {
       const Vec3 to = camera.Ray(row, col);

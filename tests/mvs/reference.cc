@@ -53,7 +53,7 @@ Vector3d Ray(const Problem& problem, int row, int col) {
 }
 
 Matrix3d Homography(const Problem& problem, int row, int col,
-                    const Plane& plane, int m) {
+                    const DepthNormal& plane, int m) {
   const RelativePose pose = FromReference(problem, m);
   const Vector3d n = ToEigen(plane.normal);
   const double distance = plane.depth * n.dot(Ray(problem, row, col));
@@ -88,7 +88,7 @@ double Bilinear(const Map<uint8_t>& image, double x, double y) {
 }  // namespace
 
 double PhotometricCost(const Options& options, const Problem& problem, int row,
-                       int col, const Plane& plane, int m) {
+                       int col, const DepthNormal& plane, int m) {
   const Map<uint8_t>& ref = *problem.reference.image;
   const Matrix3d H = Homography(problem, row, col, plane, m);
   const int r = options.window_radius;
@@ -185,7 +185,7 @@ double SelectionProb(double forward, double backward, double previous,
 }
 
 double Prior(const Options& options, const Problem& problem, int row, int col,
-             const Plane& plane, int m) {
+             const DepthNormal& plane, int m) {
   const RelativePose pose = FromReference(problem, m);
   const Vector3d point = plane.depth * Ray(problem, row, col);
   const Vector3d to_ref = (-point).normalized();
@@ -235,7 +235,7 @@ State Initialize(const Options& options, const Problem& problem,
   state.chosen = Map<uint8_t>(depth.width(), depth.height());
   for (int row = 0; row < depth.height(); ++row) {
     for (int col = 0; col < depth.width(); ++col) {
-      const Plane plane = {depth.At(row, col), normal.At(row, col)};
+      const DepthNormal plane = {depth.At(row, col), normal.At(row, col)};
       for (size_t m = 0; m < problem.sources.size(); ++m) {
         state.cost.push_back(RoundCost(PhotometricCost(
             options, problem, row, col, plane, static_cast<int>(m))));
@@ -315,16 +315,16 @@ std::vector<int> DrawViews(const Options& options, const Random& random,
 }
 
 // Depth 0: no hypothesis.
-Plane PlaneOfPixel(const PlaneSet& set, const SweepGuide& guide,
-                   const Problem& problem, int row, int col) {
+DepthNormal PlaneOfPixel(const PlaneSet& set, const GuideMaps& guide,
+                         const Problem& problem, int row, int col) {
   if (set.index.empty() || set.index.At(row, col) == PlaneSet::kNone) {
-    return Plane();
+    return DepthNormal();
   }
-  const ScenePlane& plane = set.planes[set.index.At(row, col)];
+  const Plane& plane = set.planes[set.index.At(row, col)];
   const double depth =
       -plane.distance / ToEigen(plane.normal).dot(Ray(problem, row, col));
   if (!(depth >= guide.depth_min) || !(depth <= guide.depth_max)) {
-    return Plane();
+    return DepthNormal();
   }
   return {static_cast<float>(depth), plane.normal};
 }
@@ -336,7 +336,7 @@ double PlusWeight(double t, double range) { return (1 - range) + range * t; }
 double MinusWeight(double t, double range) { return 1 - range * t; }
 
 void Sweep(const Options& options, const Problem& problem,
-           const SweepGuide& guide, int index, State* state) {
+           const GuideMaps& guide, int index, State* state) {
   const int num_sources = static_cast<int>(problem.sources.size());
   const int width = state->depth.width();
   const int direction = index % 4;
@@ -367,8 +367,8 @@ void Sweep(const Options& options, const Problem& problem,
     Position before = pixels[0];
     for (int i = 0; i < length; ++i) {
       const auto [row, col] = pixels[i];
-      const Plane current = {state->depth.At(row, col),
-                             state->normal.At(row, col)};
+      const DepthNormal current = {state->depth.At(row, col),
+                                   state->normal.At(row, col)};
       const Random random(options.seed,
                           static_cast<uint64_t>(row) * width + col, index);
       std::vector<double> weights(num_sources);
@@ -397,7 +397,7 @@ void Sweep(const Options& options, const Problem& problem,
           (1 - perturbation + 2 * perturbation * random.Uniform(kDrawDepth)));
       const Vec3 random_normal =
           PerturbedNormal(random, perturbation, current.normal, ray);
-      const std::vector<Plane> planes = {
+      const std::vector<DepthNormal> planes = {
           current,
           {static_cast<float>(propagated), previous_normal},
           {random_depth, random_normal},
@@ -460,7 +460,7 @@ void Sweep(const Options& options, const Problem& problem,
 }
 
 int CountConsistent(const Options& options, const Problem& problem, int row,
-                    int col, const Plane& plane, const double* prob) {
+                    int col, const DepthNormal& plane, const double* prob) {
   const Vector3d point = plane.depth * Ray(problem, row, col);
   int count = 0;
   for (size_t m = 0; m < problem.sources.size(); ++m) {

@@ -6,7 +6,7 @@
 #include "src/mvs/cpu/problem_data.h"
 #include "src/mvs/options.h"
 #include "src/mvs/problem.h"
-#include "src/mvs/sweep/plane.h"
+#include "src/mvs/sweep/depth_normal.h"
 
 // The algorithm once more, as literally and slowly as possible, in double
 // precision and without sharing code with the engine but the random numbers:
@@ -16,7 +16,7 @@ namespace tapa::reference {
 // 1 - NCC of the window around a reference pixel with its image in source view
 // m, the window being warped by the plane's homography.
 double PhotometricCost(const Options& options, const Problem& problem, int row,
-                       int col, const Plane& plane, int m);
+                       int col, const DepthNormal& plane, int m);
 
 // Forward-backward reprojection error in pixels, truncated.
 double GeometricCost(const Options& options, const Problem& problem, int row,
@@ -30,7 +30,7 @@ double SelectionProb(double forward, double backward, double previous,
 
 // Product of the three priors of a source view.
 double Prior(const Options& options, const Problem& problem, int row, int col,
-             const Plane& plane, int m);
+             const DepthNormal& plane, int m);
 
 // State of all pixels, values of the views at [pixel * sources + m].
 struct State {
@@ -56,7 +56,7 @@ double MinusWeight(double t, double range);
 // One sweep without filter; `index` counts sweeps from 0, its remainder by 4
 // gives the direction.
 void Sweep(const Options& options, const Problem& problem,
-           const SweepGuide& guide, int index, State* state);
+           const GuideMaps& guide, int index, State* state);
 
 struct Position {
   int row;
@@ -70,7 +70,7 @@ std::vector<Position> LinePixels(const Problem& problem, int direction,
 
 // Number of views that support the estimate of a pixel in the last sweep.
 int CountConsistent(const Options& options, const Problem& problem, int row,
-                    int col, const Plane& plane, const double* prob);
+                    int col, const DepthNormal& plane, const double* prob);
 
 }  // namespace tapa::reference
 

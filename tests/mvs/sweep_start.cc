@@ -7,29 +7,13 @@
 
 namespace tapa {
 
-SweepParams MakeSweepParams(const Options& options, int index) {
-  SweepParams params;
-  params.index = index;
-  params.seed = options.seed;
-  params.num_samples = options.num_samples;
-  params.perturbation =
-      static_cast<float>(std::pow(2.0, -(index / 4 + index % 4 / 4.0)));
-  params.prev_prob_weight =
-      static_cast<float>(index) / (4 * options.num_iterations);
-  params.selection = ViewSelection::FromSigma(options.ncc_sigma);
-  params.prior = ViewPrior::FromAngles(options.min_triangulation_angle,
-                                       options.incident_angle_sigma);
-  params.geometric = options.geom_consistency;
-  return params;
-}
-
-ScenePlane PlaneThrough(float depth, const Vec3& normal) {
+Plane PlaneThrough(float depth, const Vec3& normal) {
   const float norm = std::sqrt(Dot(normal, normal));
   return {(1 / norm) * normal, -depth * normal.z / norm};
 }
 
-PlaneSet DrawAtRandom(const std::vector<ScenePlane>& planes, int width,
-                      int height, std::mt19937* random) {
+PlaneSet DrawAtRandom(const std::vector<Plane>& planes, int width, int height,
+                      std::mt19937* random) {
   PlaneSet set;
   set.planes = planes;
   set.index = Map<uint16_t>(width, height);
@@ -41,12 +25,12 @@ PlaneSet DrawAtRandom(const std::vector<ScenePlane>& planes, int width,
   return set;
 }
 
-SweepGuide MakeGuide(const SyntheticPlane& scene, std::mt19937* random) {
+GuideMaps MakeGuide(const SyntheticPlane& scene, std::mt19937* random) {
   const Problem& problem = scene.problem();
   const Map<uint8_t>& image = *problem.reference.image;
   const float depth = 4.0f;
   const Vec3 normal = scene.normal();
-  SweepGuide guide;
+  GuideMaps guide;
   guide.depth_min = problem.depth_min;
   guide.depth_max = problem.depth_max;
   guide.weight_range = 0.2f;
@@ -54,7 +38,7 @@ SweepGuide MakeGuide(const SyntheticPlane& scene, std::mt19937* random) {
   for (size_t i = 0; i < guide.textureness.size(); ++i) {
     guide.textureness.data()[i] = 0.2f + (*random)() % 1000 * 0.0008f;
   }
-  const ScenePlane truth = PlaneThrough(depth, normal);
+  const Plane truth = PlaneThrough(depth, normal);
   guide.fine = DrawAtRandom({truth,
                              PlaneThrough(1.002f * depth, normal),
                              PlaneThrough(1.2f * depth, normal),

@@ -5,26 +5,22 @@
 #include <vector>
 
 #include "src/mvs/cpu/problem_data.h"
-#include "src/mvs/sweep/sweep_params.h"
 #include "tests/mvs/synthetic.h"
 
 namespace tapa {
 
 // What tests of single sweeps start with.
 
-// Parameters of one sweep, as the schedule would set them.
-SweepParams MakeSweepParams(const Options& options, int index);
-
 // The plane of this depth on the optical axis.
-ScenePlane PlaneThrough(float depth, const Vec3& normal);
+Plane PlaneThrough(float depth, const Vec3& normal);
 
 // Every pixel draws one of them or, at times, none.
-PlaneSet DrawAtRandom(const std::vector<ScenePlane>& planes, int width,
-                      int height, std::mt19937* random);
+PlaneSet DrawAtRandom(const std::vector<Plane>& planes, int width, int height,
+                      std::mt19937* random);
 
 // Planes near the truth and far from it, out of the range of depths and turned
 // away.
-SweepGuide MakeGuide(const SyntheticPlane& scene, std::mt19937* random);
+GuideMaps MakeGuide(const SyntheticPlane& scene, std::mt19937* random);
 
 struct Start {
   Map<float> depth;

@@ -10,6 +10,7 @@
 
 #include "src/mvs/camera_table.h"
 #include "src/mvs/estimate_depth.h"
+#include "src/mvs/schedule.h"
 #include "src/mvs/sweep/sweep_pixel.h"
 #include "src/mvs/sweep/texture_weights.h"
 #include "src/mvs/tapa/textureness.h"
@@ -90,8 +91,8 @@ TEST(ViewPrior, AgreesWithReference) {
       const int row = random() % 40;
       const int col = random() % 48;
       const Vec3 ray = cameras.reference().Ray(row, col);
-      const Plane plane = {depths(random),
-                           RandomNormal(Random(random(), 0, 0), ray)};
+      const DepthNormal plane = {depths(random),
+                                 RandomNormal(Random(random(), 0, 0), ray)};
       // Nearly edge-on windows reach beyond the horizon, where areas mean
       // nothing.
       if (Dot(plane.normal, ray) > -0.3f) {
@@ -173,12 +174,13 @@ SweepState MakeState(const ProblemData& data, const Map<float>& depth,
 }
 
 // A whole sweep.
-void RunSweep(const ProblemData& data, const SweepParams& params,
-              const SweepGuide& guide, SweepState* state,
+void RunSweep(const ProblemData& data, const Options& options, int index,
+              const GuideMaps& guide, SweepState* state,
               SweepScratch* scratch) {
-  const auto direction = static_cast<Direction>(params.index % 4);
+  const SweepParams params = Schedule(options, data.num_sources).At(index);
   SweepLines(
-      data, params, guide, direction, 0, NumLines(data, direction),
+      data, params, guide.Guide(), 0,
+      NumLines(params.SweepDirection(), data.width, data.height),
       [] { return true; }, state, scratch);
 }
 
@@ -201,8 +203,8 @@ TEST_P(SweepTest, MakesTheChoicesOfTheReference) {
       GetParam().geometric ? scene.GeometricProblem() : scene.problem();
   const auto [depth, normal] = StartNearTruth(scene);
   std::mt19937 random(6);
-  const SweepGuide guide =
-      GetParam().guided ? MakeGuide(scene, &random) : SweepGuide();
+  const GuideMaps guide =
+      GetParam().guided ? MakeGuide(scene, &random) : GuideMaps();
 
   reference::State expected =
       reference::Initialize(options, problem, depth, normal);
@@ -212,9 +214,7 @@ TEST_P(SweepTest, MakesTheChoicesOfTheReference) {
   SweepScratch scratch(data);
   SweepState actual = MakeState(data, depth, normal, &scratch);
   const auto first_cost = actual.cost;
-  const auto direction = static_cast<Direction>(GetParam().index % 4);
-  RunSweep(data, MakeSweepParams(options, GetParam().index), guide, &actual,
-           &scratch);
+  RunSweep(data, options, GetParam().index, guide, &actual, &scratch);
 
   int num_same = 0;
   int num_same_choices = 0;
@@ -248,7 +248,9 @@ TEST_P(SweepTest, MakesTheChoicesOfTheReference) {
   // costs before and after the sweep.
   const double previous_weight =
       GetParam().index / (4.0 * options.num_iterations);
-  for (int index = 0; index < NumLines(data, direction); ++index) {
+  const int num_lines =
+      NumLines(DirectionOf(GetParam().index), data.width, data.height);
+  for (int index = 0; index < num_lines; ++index) {
     const std::vector<reference::Position> pixels =
         reference::LinePixels(problem, GetParam().index % 4, index);
     for (int m = 0; m < data.num_sources; ++m) {
@@ -361,19 +363,19 @@ TEST(Sweep, WithoutPlanesAndWeightsIsThePlainAlgorithm) {
         geometric ? scene.GeometricProblem() : scene.problem();
     const ProblemData data(options, problem);
     SweepScratch scratch(data);
-    const auto sweep_twice = [&](const SweepGuide& guide) {
+    const auto sweep_twice = [&](const GuideMaps& guide) {
       SweepState state = MakeState(data, depth, normal, &scratch);
-      RunSweep(data, MakeSweepParams(options, 4), guide, &state, &scratch);
-      RunSweep(data, MakeSweepParams(options, 5), guide, &state, &scratch);
+      RunSweep(data, options, 4, guide, &state, &scratch);
+      RunSweep(data, options, 5, guide, &state, &scratch);
       return state;
     };
-    const SweepState plain = sweep_twice(SweepGuide());
+    const SweepState plain = sweep_twice(GuideMaps());
 
     std::mt19937 random(1);
-    const SweepGuide guide = MakeGuide(scene, &random);
+    const GuideMaps guide = MakeGuide(scene, &random);
     EXPECT_FALSE(SameState(sweep_twice(guide), plain));
     // No pixel has a plane, and weights change nothing.
-    SweepGuide idle = guide;
+    GuideMaps idle = guide;
     idle.weight_range = 0;
     for (PlaneSet* set : {&idle.fine, &idle.coarse}) {
       set->index = Map<uint16_t>(data.width, data.height, PlaneSet::kNone);
@@ -381,7 +383,7 @@ TEST(Sweep, WithoutPlanesAndWeightsIsThePlainAlgorithm) {
     EXPECT_TRUE(SameState(sweep_twice(idle), plain));
     // No plane is possible: out of range, behind the camera, turned away or
     // seen edge-on.
-    SweepGuide impossible;
+    GuideMaps impossible;
     impossible.depth_min = problem.depth_min;
     impossible.depth_max = problem.depth_max;
     const Vec3 n = scene.normal();
@@ -412,13 +414,13 @@ TEST(Sweep, RangeOfDepthsIncludesItsEnds) {
   SweepScratch scratch(data);
   const auto [depth, normal] = StartNearTruth(scene);
   for (const float distance : {1.9f, 2.0f, 5.0f, 8.0f, 8.1f}) {
-    SweepGuide guide;
+    GuideMaps guide;
     guide.depth_min = 2;
     guide.depth_max = 8;
     guide.fine.planes = {{{0, 0, -1}, distance}};
     guide.fine.index = Map<uint16_t>(48, 40, uint16_t{0});
     SweepState state = MakeState(data, depth, normal, &scratch);
-    RunSweep(data, MakeSweepParams(options, 0), guide, &state, &scratch);
+    RunSweep(data, options, 0, guide, &state, &scratch);
     const bool in_range = distance >= 2 && distance <= 8;
     EXPECT_EQ(state.chosen.At(20, 24) == kFinePlane, in_range) << distance;
   }
@@ -452,7 +454,7 @@ void ExpectPlanesToWinOnAFlatPatch(bool geometric) {
       SCOPED_TRACE(testing::Message()
                    << "textureness " << min_textureness << ", sweep " << index);
       std::mt19937 random(index);
-      SweepGuide guide = MakeGuide(scene, &random);
+      GuideMaps guide = MakeGuide(scene, &random);
       const Vec3 n = scene.normal();
       guide.fine = DrawAtRandom({PlaneThrough(3, n), PlaneThrough(5, n)}, 48,
                                 40, &random);
@@ -466,7 +468,7 @@ void ExpectPlanesToWinOnAFlatPatch(bool geometric) {
         guide.textureness = Map<float>();
       }
       SweepState state = MakeState(data, depth, normal, &scratch);
-      RunSweep(data, MakeSweepParams(options, index), guide, &state, &scratch);
+      RunSweep(data, options, index, guide, &state, &scratch);
 
       const RefCamera camera = CameraTable(problem).reference();
       int num_wrong = 0;
@@ -503,7 +505,7 @@ TEST(Sweep, OnAFlatPatchPlanesWinInTheGeometricPass) {
   ExpectPlanesToWinOnAFlatPatch(true);
 }
 
-TEST(Sweep, FilterKeepsWhatEnoughViewsSupport) {
+TEST(Sweep, FilterKeepsWhatIsConsistentWithEnoughViews) {
   SyntheticOptions scene_options;
   scene_options.baseline = 0.35;
   const SyntheticPlane scene(scene_options);
@@ -521,8 +523,8 @@ TEST(Sweep, FilterKeepsWhatEnoughViewsSupport) {
   for (int row = 0; row < 40; ++row) {
     for (int col = 0; col < 48; ++col) {
       const size_t pixel = static_cast<size_t>(row) * 48 + col;
-      const Plane plane = {unfiltered->depth.At(row, col),
-                           unfiltered->normal.At(row, col)};
+      const DepthNormal plane = {unfiltered->depth.At(row, col),
+                                 unfiltered->normal.At(row, col)};
       double prob[4];
       for (int m = 0; m < 4; ++m) {
         prob[m] = estimate->selection_prob[pixel * 4 + m] / 65535.0;
@@ -554,13 +556,16 @@ TEST(Sweep, DrawsViewsInProportionToTheirProbability) {
   s.num_drawn = num_drawn.data();
   s.order = order.data();
   s.uniform = uniform.data();
-  double total[4] = {};
   SweepParams params;
   params.num_samples = 15;
+  const RefCamera camera = cameras.reference();
+  double total[4] = {};
   for (int i = 0; i < 20000; ++i) {
     std::copy(steps.begin(), steps.end(), cdf.begin());
-    const int num_distinct =
-        DrawViews<SerialLanes>(params, Random(1, i, 0), views, &s);
+    const PixelContext pixel = {
+        params, camera,          views,         s,           0, 0,
+        Vec3(), Random(1, i, 0), DepthNormal(), PixelGuide()};
+    const int num_distinct = DrawViews<SerialLanes>(pixel);
     double sum = 0;
     int seen = 0;
     for (int k = 0; k < 4; ++k) {

@@ -190,11 +190,12 @@ TEST(Completion, RemovesEstimatesThatTooFewViewsSupport) {
   const std::vector<uint8_t> consistent = {0, 0, 1, 0, 1, 4, 0, 6};
   const float expected[4][4] = {
       {5, 5, 5, 5}, {0, 5, 5, 5}, {0, 0, 5, 5}, {0, 0, 0, 0}};
-  for (int min_num_views = 0; min_num_views < 4; ++min_num_views) {
+  for (int min_num_consistent = 0; min_num_consistent < 4;
+       ++min_num_consistent) {
     Map<float> depth(4, 1, 5);
-    RemoveUnsupported(consistent, 11, min_num_views, &depth);
+    RemoveInconsistent(consistent, 11, min_num_consistent, &depth);
     for (int i = 0; i < 4; ++i) {
-      EXPECT_EQ(depth.At(0, i), expected[min_num_views][i]);
+      EXPECT_EQ(depth.At(0, i), expected[min_num_consistent][i]);
     }
   }
 }

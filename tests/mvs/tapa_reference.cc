@@ -59,11 +59,10 @@ double Textureness(const Map<uint8_t>& image, int row, int col,
          (variance + options.epsilon / options.min_textureness);
 }
 
-int RemoveSpeckles(const Continuity& continuity, int max_size,
-                   Map<float>* depth) {
+void RemoveSpeckles(const Continuity& continuity, int max_size,
+                    Map<float>* depth) {
   const Map<float> before = *depth;
   Map<uint8_t> visited(depth->width(), depth->height(), 0);
-  int num_removed = 0;
   for (int row = 0; row < depth->height(); ++row) {
     for (int col = 0; col < depth->width(); ++col) {
       if (!IsDepth(before.At(row, col))) {
@@ -91,11 +90,9 @@ int RemoveSpeckles(const Continuity& continuity, int max_size,
         for (const Pixel& p : region) {
           depth->At(p.row, p.col) = 0;
         }
-        num_removed += static_cast<int>(region.size());
       }
     }
   }
-  return num_removed;
 }
 
 std::vector<std::vector<Neighbor>> FindNeighbors(const Map<Rgb>& image,
@@ -195,10 +192,9 @@ int MaxNumInliers(const std::vector<Vec3>& points, double max_distance) {
   return best;
 }
 
-int FillMissing(const FillOptions& options, const RefCamera& camera,
-                const Map<uint8_t>& image, Map<float>* depth,
-                Map<Vec3>* normal) {
-  int num_filled = 0;
+void FillMissing(const FillOptions& options, const RefCamera& camera,
+                 const Map<uint8_t>& image, Map<float>* depth,
+                 Map<Vec3>* normal) {
   for (int round = 0; round < options.num_rounds; ++round) {
     const Map<float> depths = *depth;
     const Map<Vec3> normals = *normal;
@@ -264,11 +260,9 @@ int FillMissing(const FillOptions& options, const RefCamera& camera,
         normal->At(row, col) = {static_cast<float>(mean_normal(0)),
                                 static_cast<float>(mean_normal(1)),
                                 static_cast<float>(mean_normal(2))};
-        ++num_filled;
       }
     }
   }
-  return num_filled;
 }
 
 }  // namespace tapa::reference

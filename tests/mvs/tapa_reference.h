@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "src/base/map.h"
-#include "src/mvs/sweep/scene_plane.h"
+#include "src/mvs/sweep/plane.h"
 #include "src/mvs/tapa/fill.h"
 #include "src/mvs/tapa/speckles.h"
 #include "src/mvs/tapa/superpixels.h"
@@ -21,15 +21,15 @@ double Textureness(const Map<uint8_t>& image, int row, int col,
                    const TexturenessOptions& options);
 
 // Flood fill from every pixel that none has reached yet.
-int RemoveSpeckles(const Continuity& continuity, int max_size,
-                   Map<float>* depth);
+void RemoveSpeckles(const Continuity& continuity, int max_size,
+                    Map<float>* depth);
 
 // Scans the whole image for every pair of superpixels.
 std::vector<std::vector<Neighbor>> FindNeighbors(const Map<Rgb>& image,
                                                  const Map<uint16_t>& labels,
                                                  int count);
 
-// Points X with Dot(normal, X) = -distance, as ScenePlane.
+// Points X with Dot(normal, X) = -distance, as Plane.
 struct DoublePlane {
   double normal[3] = {0, 0, 0};
   double distance = 0;
@@ -44,9 +44,9 @@ DoublePlane FitLeastSquares(const std::vector<Vec3>& points);
 // them: what RANSAC approximates. Takes cubic time and more.
 int MaxNumInliers(const std::vector<Vec3>& points, double max_distance);
 
-int FillMissing(const FillOptions& options, const RefCamera& camera,
-                const Map<uint8_t>& image, Map<float>* depth,
-                Map<Vec3>* normal);
+void FillMissing(const FillOptions& options, const RefCamera& camera,
+                 const Map<uint8_t>& image, Map<float>* depth,
+                 Map<Vec3>* normal);
 
 }  // namespace tapa::reference
 

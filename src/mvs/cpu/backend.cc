@@ -6,6 +6,8 @@
 #include "src/mvs/backends.h"
 #include "src/mvs/cpu/problem_data.h"
 #include "src/mvs/cpu/sweep.h"
+#include "src/mvs/schedule.h"
+#include "src/mvs/testing.h"
 
 namespace tapa {
 namespace {
@@ -14,54 +16,58 @@ namespace {
 // cache lines.
 constexpr int kLinesPerBlock = 8;
 
-class CpuBackend : public Backend {
+class CpuBackend : public BackendForTesting {
  public:
   CpuBackend(const Options& options, const Problem& problem)
       : data_(options, problem),
-        state_(data_, options.filter || options.tapa.enabled),
+        state_(data_, Schedule::ChecksConsistency(options)),
         team_(EffectiveNumThreads(options.num_threads)) {
     if (options.tapa.enabled) {
       state_.chosen = Map<uint8_t>(data_.width, data_.height);
     }
-    guide_.weight_range = static_cast<float>(options.tapa.weight_range);
-    guide_.depth_min = problem.depth_min;
-    guide_.depth_max = problem.depth_max;
+    guide_maps_.weight_range = static_cast<float>(options.tapa.weight_range);
+    guide_maps_.depth_min = problem.depth_min;
+    guide_maps_.depth_max = problem.depth_max;
     for (int i = 0; i < team_.size(); ++i) {
       scratch_.push_back(std::make_unique<SweepScratch>(data_));
     }
   }
 
   bool SetEstimate(Map<float> depth, Map<Vec3> normal,
-                   const More& more) override {
+                   const ProgressCallback& progress) override {
     state_.depth = std::move(depth);
     state_.normal = std::move(normal);
     return team_.For(
         data_.height, kLinesPerBlock,
-        [&](int thread, int begin, int end, const ThreadTeam::GoOn& go_on) {
-          ComputeCosts(data_, begin, end, go_on, &state_,
+        [&](int thread, int begin, int end,
+            const ContinueCheck& should_continue) {
+          ComputeCosts(data_, begin, end, should_continue, &state_,
                        scratch_[thread].get());
         },
-        more);
+        progress);
   }
 
-  bool Sweep(const SweepParams& params, const More& more) override {
-    const auto direction = static_cast<Direction>(params.index % 4);
+  bool Sweep(const SweepParams& params,
+             const ProgressCallback& progress) override {
+    const SweepGuide<float> guide = guide_maps_.Guide();
     return team_.For(
-        NumLines(data_, direction), kLinesPerBlock,
-        [&](int thread, int begin, int end, const ThreadTeam::GoOn& go_on) {
-          SweepLines(data_, params, guide_, direction, begin, end, go_on,
-                     &state_, scratch_[thread].get());
+        NumLines(params.SweepDirection(), data_.width, data_.height),
+        kLinesPerBlock,
+        [&](int thread, int begin, int end,
+            const ContinueCheck& should_continue) {
+          SweepLines(data_, params, guide, begin, end, should_continue, &state_,
+                     scratch_[thread].get());
         },
-        more);
+        progress);
   }
 
   void SetTextureness(Map<float> textureness) override {
-    guide_.textureness = std::move(textureness);
+    guide_maps_.textureness = std::move(textureness);
   }
 
   void SetPlanes(PlaneSet fine, PlaneSet coarse) override {
-    guide_.fine = std::move(fine);
-    guide_.coarse = std::move(coarse);
+    guide_maps_.fine = std::move(fine);
+    guide_maps_.coarse = std::move(coarse);
   }
 
   const Map<float>& Depth() override { return state_.depth; }
@@ -80,16 +86,21 @@ class CpuBackend : public Backend {
  private:
   ProblemData data_;
   SweepState state_;
-  SweepGuide guide_;
+  GuideMaps guide_maps_;
   ThreadTeam team_;
   std::vector<std::unique_ptr<SweepScratch>> scratch_;
 };
 
 }  // namespace
 
+std::unique_ptr<BackendForTesting> MakeCpuBackendForTesting(
+    const Options& options, const Problem& problem) {
+  return std::make_unique<CpuBackend>(options, problem);
+}
+
 std::unique_ptr<Backend> MakeCpuBackend(const Options& options,
                                         const Problem& problem) {
-  return std::make_unique<CpuBackend>(options, problem);
+  return MakeCpuBackendForTesting(options, problem);
 }
 
 }  // namespace tapa

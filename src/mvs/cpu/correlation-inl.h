@@ -163,8 +163,8 @@ HWY_INLINE Moments SumSamples(const Window& window, const Patch& patch,
     FloatVec u = hn::Mul(x, inv_z);
     FloatVec v = hn::Mul(y, inv_z);
     if (!kInside) {
-      // Everything else, points behind the camera and what is not a number
-      // included, sees the black border at the origin.
+      // Everything else, points behind the camera and NaN included, sees the
+      // black border at the origin.
       const FloatVec zero = hn::Zero(d);
       const FloatVec max_u = hn::Set(d, source.width() + 1.0f);
       const FloatVec max_v = hn::Set(d, source.height() + 1.0f);

@@ -1,5 +1,7 @@
 #include "src/mvs/cpu/problem_data.h"
 
+#include "src/mvs/sweep/consistency_mask.h"
+
 namespace tapa {
 
 ProblemData::ProblemData(const Options& options, const Problem& problem)
@@ -17,10 +19,11 @@ ProblemData::ProblemData(const Options& options, const Problem& problem)
   }
 }
 
-SweepState::SweepState(const ProblemData& data, bool filter)
+SweepState::SweepState(const ProblemData& data, bool with_mask)
     : cost(data.NumPixels() * data.num_sources),
       prob(data.NumPixels() * data.num_sources),
-      consistent(filter ? data.NumPixels() * ((data.num_sources + 7) / 8) : 0) {
-}
+      consistent(with_mask
+                     ? data.NumPixels() * ConsistencyMaskBytes(data.num_sources)
+                     : 0) {}
 
 }  // namespace tapa

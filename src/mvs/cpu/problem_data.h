@@ -10,6 +10,7 @@
 #include "src/mvs/options.h"
 #include "src/mvs/plane_set.h"
 #include "src/mvs/problem.h"
+#include "src/mvs/sweep/guide.h"
 
 namespace tapa {
 
@@ -19,6 +20,9 @@ struct ProblemData {
   ProblemData(const Options& options, const Problem& problem);
 
   size_t NumPixels() const { return static_cast<size_t>(width) * height; }
+  size_t Pixel(int row, int col) const {
+    return static_cast<size_t>(row) * width + col;
+  }
 
   int width;
   int height;
@@ -37,7 +41,12 @@ struct ProblemData {
 struct SweepState {
   // Leaves the estimate empty, and costs and probabilities undefined until
   // ComputeCosts.
-  SweepState(const ProblemData& data, bool filter);
+  // with_mask: with `consistent`.
+  SweepState(const ProblemData& data, bool with_mask);
+
+  DepthNormal At(size_t pixel) const {
+    return {depth.data()[pixel], normal.data()[pixel]};
+  }
 
   Map<float> depth;
   Map<Vec3> normal;
@@ -52,15 +61,25 @@ struct SweepState {
 };
 
 // What comes to sweeps from outside and changes between them.
-struct SweepGuide {
-  // Textureness of every pixel; empty: costs are not weighted.
+struct GuideMaps {
+  // Empty: costs are not weighted.
   Map<float> textureness;
+  // As in SweepGuide.
   float weight_range = 0;
-  // Planes outside this range of depths are no hypotheses, in scene units.
   float depth_min = 0;
   float depth_max = 0;
   PlaneSet fine;
   PlaneSet coarse;
+
+  // Points into these maps.
+  SweepGuide<float> Guide() const {
+    return {textureness.empty() ? nullptr : textureness.data(),
+            weight_range,
+            depth_min,
+            depth_max,
+            fine.Table(),
+            coarse.Table()};
+  }
 };
 
 }  // namespace tapa

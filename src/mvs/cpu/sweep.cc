@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "src/mvs/sweep/consistency_mask.h"
+#include "src/mvs/sweep/line.h"
 #include "src/mvs/sweep/sweep_pixel.h"
 
 // Vectors whose size is not known to the compiler cannot be kept in structures,
@@ -23,8 +25,8 @@ namespace HWY_NAMESPACE {
 // The source views as the shared sweep sees them, at one pixel.
 class Sources {
  public:
-  Sources(const ProblemData& data, const Patch& patch, uint8_t* consistent)
-      : data_(data), patch_(patch), consistent_(consistent) {}
+  Sources(const ProblemData& data, const Patch& patch, uint8_t* mask)
+      : data_(data), patch_(patch), mask_(mask) {}
 
   float Cost(int m, const Warp& warp) const {
     return CorrelationCost(data_.window, patch_, data_.sources[m], warp);
@@ -42,59 +44,39 @@ class Sources {
   }
 
   void SetConsistent(int m, bool consistent) {
-    consistent_[m / 8] |= static_cast<uint8_t>(consistent) << (m % 8);
+    mask_[m / 8] |= ConsistencyBit(m, consistent);
   }
 
  private:
   const ProblemData& data_;
   const Patch& patch_;
-  uint8_t* consistent_;
+  uint8_t* mask_;
 };
 
-// Asks whether to go on once for a number of pixels that takes some
+// Asks whether to continue once for a number of pixels that takes some
 // milliseconds, however large the window and the number of views.
-class Pause {
+class PeriodicCheck {
  public:
-  Pause(const ProblemData& data, const GoOn& go_on) : go_on_(go_on) {
-    constexpr double kSamplesPerPause = 1e7;
+  PeriodicCheck(const ProblemData& data, const ContinueCheck& should_continue)
+      : should_continue_(should_continue) {
+    constexpr double kSamplesPerCheck = 1e7;
     // At most: every hypothesis in every view.
     const double correlations =
         static_cast<double>(kNumHypotheses) * data.num_sources;
     interval_ = static_cast<int>(std::clamp(
-        kSamplesPerPause / (correlations * data.window.num_samples), 1.0, 1e6));
+        kSamplesPerCheck / (correlations * data.window.num_samples), 1.0, 1e6));
   }
 
-  // To be called for every pixel.
-  bool GoOnAfterPixel() { return ++num_pixels_ % interval_ != 0 || go_on_(); }
+  // To be called for every pixel. Returns whether to continue.
+  bool AfterPixel() {
+    return ++num_pixels_ % interval_ != 0 || should_continue_();
+  }
 
  private:
-  const GoOn& go_on_;
+  const ContinueCheck& should_continue_;
   int interval_;
   int num_pixels_ = 0;
 };
-
-// Pixels of a line in the order of the sweep.
-struct Line {
-  int row;
-  int col;
-  int row_step;
-  int col_step;
-  int length;
-};
-
-Line MakeLine(const ProblemData& data, Direction direction, int index) {
-  switch (direction) {
-    case Direction::kDown:
-      return {0, index, 1, 0, data.height};
-    case Direction::kLeft:
-      return {index, data.width - 1, 0, -1, data.width};
-    case Direction::kUp:
-      return {data.height - 1, index, -1, 0, data.height};
-    case Direction::kRight:
-      break;
-  }
-  return {index, 0, 0, 1, data.width};
-}
 
 HWY_ATTR void DecodeCosts(const uint16_t* HWY_RESTRICT codes, int count,
                           int padded_count, float* HWY_RESTRICT costs) {
@@ -110,7 +92,8 @@ HWY_ATTR void DecodeCosts(const uint16_t* HWY_RESTRICT codes, int count,
 HWY_ATTR void ComputeBackwardMessages(const ProblemData& data,
                                       const SourceCameras& views,
                                       const SweepParams& params,
-                                      const Line& line, const SweepState& state,
+                                      const SweepLine& line,
+                                      const SweepState& state,
                                       SweepScratch* scratch) {
   const int padded_count = views.padded_count;
   float* HWY_RESTRICT cost = scratch->pixel.cost;
@@ -119,9 +102,7 @@ HWY_ATTR void ComputeBackwardMessages(const ProblemData& data,
     message[m] = ViewSelection::kBorderMessage;
   }
   for (int i = line.length - 1; i >= 0; --i) {
-    const size_t pixel =
-        static_cast<size_t>(line.row + i * line.row_step) * data.width +
-        line.col + i * line.col_step;
+    const size_t pixel = data.Pixel(line.Row(i), line.Col(i));
     DecodeCosts(state.cost.data() + pixel * views.count, views.count,
                 padded_count, cost);
     float* HWY_RESTRICT backward =
@@ -135,11 +116,11 @@ HWY_ATTR void ComputeBackwardMessages(const ProblemData& data,
 }
 
 HWY_ATTR void LoadPixel(const SweepState& state, size_t pixel,
-                        const SourceCameras& views, PixelScratch* s) {
+                        const SourceCameras& views, const PixelScratch& s) {
   DecodeCosts(state.cost.data() + pixel * views.count, views.count,
-              views.padded_count, s->cost);
+              views.padded_count, s.cost);
   const uint16_t* HWY_RESTRICT prob = state.prob.data() + pixel * views.count;
-  float* HWY_RESTRICT to = s->prob;
+  float* HWY_RESTRICT to = s.prob;
   for (int m = 0; m < views.count; ++m) {
     to[m] = DecodeProb(prob[m]);
   }
@@ -158,35 +139,30 @@ HWY_ATTR void StorePixel(const PixelScratch& s, size_t pixel,
   }
 }
 
-// The plane that a pixel may try, if any.
-TAPA_INLINE Plane FindPlane(const PlaneSet& set, const SweepGuide& guide,
-                            size_t pixel, const Vec3& ray) {
-  if (set.index.empty() || set.index.data()[pixel] == PlaneSet::kNone) {
-    return Plane();
+// Writes the estimate of a pixel, or none where it is not consistent.
+HWY_ATTR void StoreChoice(const Choice& choice, size_t pixel, uint8_t* mask,
+                          int mask_bytes, SweepState* state) {
+  if (!state->chosen.empty()) {
+    state->chosen.data()[pixel] = static_cast<uint8_t>(choice.hypothesis);
   }
-  return ProposedPlane(set.planes[set.index.data()[pixel]], ray,
-                       guide.depth_min, guide.depth_max);
-}
-
-TAPA_INLINE PixelGuide GuideOf(const SweepGuide& guide, size_t pixel,
-                               const Vec3& ray) {
-  PixelGuide result;
-  if (!guide.textureness.empty()) {
-    result.weights = TextureWeights::FromTextureness(
-        guide.textureness.data()[pixel], guide.weight_range);
+  if (choice.is_consistent) {
+    state->depth.data()[pixel] = choice.estimate.depth;
+    state->normal.data()[pixel] = choice.estimate.normal;
+  } else {
+    state->depth.data()[pixel] = 0;
+    state->normal.data()[pixel] = Vec3();
+    std::memset(mask, 0, mask_bytes);
   }
-  result.fine = FindPlane(guide.fine, guide, pixel, ray);
-  result.coarse = FindPlane(guide.coarse, guide, pixel, ray);
-  return result;
 }
 
 // Returns false if told to stop on the way.
-HWY_ATTR bool SweepLine(const ProblemData& data, const SweepParams& params,
-                        const SweepGuide& guide, const Line& line, Pause* pause,
-                        SweepState* state, SweepScratch* scratch) {
+HWY_ATTR bool SweepOneLine(const ProblemData& data, const SweepParams& params,
+                           const SweepGuide<float>& guide,
+                           const SweepLine& line, PeriodicCheck* check,
+                           SweepState* state, SweepScratch* scratch) {
   const RefCamera camera = data.cameras.reference();
   const SourceCameras views = data.cameras.sources();
-  const size_t mask_bytes = (views.count + 7) / 8;
+  const int mask_bytes = ConsistencyMaskBytes(views.count);
   PixelScratch s = scratch->pixel;
 
   ComputeBackwardMessages(data, views, params, line, *state, scratch);
@@ -194,42 +170,37 @@ HWY_ATTR bool SweepLine(const ProblemData& data, const SweepParams& params,
     s.forward[m] = ViewSelection::kBorderMessage;
   }
 
-  Plane previous = {state->depth.At(line.row, line.col),
-                    state->normal.At(line.row, line.col)};
-  Vec3 previous_ray = camera.Ray(line.row, line.col);
+  PreviousPixel previous = {state->At(data.Pixel(line.row, line.col)),
+                            camera.Ray(line.row, line.col)};
   for (int i = 0; i < line.length; ++i) {
-    const int row = line.row + i * line.row_step;
-    const int col = line.col + i * line.col_step;
-    const size_t pixel = static_cast<size_t>(row) * data.width + col;
+    const int row = line.Row(i);
+    const int col = line.Col(i);
+    const size_t pixel = data.Pixel(row, col);
     LoadPatch(data.window, data.reference, row, col, &scratch->patch);
-    LoadPixel(*state, pixel, views, &s);
+    LoadPixel(*state, pixel, views, s);
     s.backward =
         scratch->backward.get() + static_cast<size_t>(i) * views.padded_count;
 
-    uint8_t* consistent =
-        params.filter ? state->consistent.data() + pixel * mask_bytes : nullptr;
-    Sources sources(data, scratch->patch, consistent);
-    const Plane current = {state->depth.At(row, col),
-                           state->normal.At(row, col)};
+    uint8_t* mask = params.check_consistency
+                        ? state->consistent.data() + pixel * mask_bytes
+                        : nullptr;
+    Sources sources(data, scratch->patch, mask);
     const Vec3 ray = camera.Ray(row, col);
-    const Choice choice = SweepPixel<SerialLanes>(
-        params, camera, views, sources, row, col, pixel, current, previous,
-        previous_ray, GuideOf(guide, pixel, ray), &s);
+    const PixelContext context = {params,
+                                  camera,
+                                  views,
+                                  s,
+                                  static_cast<float>(row),
+                                  static_cast<float>(col),
+                                  ray,
+                                  Random(params.seed, pixel, params.index),
+                                  state->At(pixel),
+                                  guide.At(pixel, ray)};
+    const Choice choice = SweepPixel<SerialLanes>(context, previous, sources);
     StorePixel(s, pixel, views, state);
-    if (!state->chosen.empty()) {
-      state->chosen.data()[pixel] = static_cast<uint8_t>(choice.hypothesis);
-    }
-    if (choice.keep) {
-      state->depth.At(row, col) = choice.plane.depth;
-      state->normal.At(row, col) = choice.plane.normal;
-    } else {
-      state->depth.At(row, col) = 0;
-      state->normal.At(row, col) = Vec3();
-      std::memset(consistent, 0, mask_bytes);
-    }
-    previous = choice.plane;
-    previous_ray = ray;
-    if (!pause->GoOnAfterPixel()) {
+    StoreChoice(choice, pixel, mask, mask_bytes, state);
+    previous = {choice.estimate, ray};
+    if (!check->AfterPixel()) {
       return false;
     }
   }
@@ -237,32 +208,32 @@ HWY_ATTR bool SweepLine(const ProblemData& data, const SweepParams& params,
 }
 
 void SweepLinesImpl(const ProblemData& data, const SweepParams& params,
-                    const SweepGuide& guide, Direction direction, int begin,
-                    int end, const GoOn& go_on, SweepState* state,
+                    const SweepGuide<float>& guide, int begin, int end,
+                    const ContinueCheck& should_continue, SweepState* state,
                     SweepScratch* scratch) {
-  Pause pause(data, go_on);
+  PeriodicCheck check(data, should_continue);
   for (int index = begin; index < end; ++index) {
-    if (!SweepLine(data, params, guide, MakeLine(data, direction, index),
-                   &pause, state, scratch)) {
+    const SweepLine line =
+        LineOf(params.SweepDirection(), index, data.width, data.height);
+    if (!SweepOneLine(data, params, guide, line, &check, state, scratch)) {
       return;
     }
   }
 }
 
 HWY_ATTR void ComputeCostsImpl(const ProblemData& data, int begin, int end,
-                               const GoOn& go_on, SweepState* state,
-                               SweepScratch* scratch) {
-  Pause pause(data, go_on);
+                               const ContinueCheck& should_continue,
+                               SweepState* state, SweepScratch* scratch) {
+  PeriodicCheck check(data, should_continue);
   const RefCamera camera = data.cameras.reference();
   const SourceCameras views = data.cameras.sources();
   for (int row = begin; row < end; ++row) {
     for (int col = 0; col < data.width; ++col) {
-      const Plane plane = {state->depth.At(row, col),
-                           state->normal.At(row, col)};
-      const Vec3 h = HomographyVector(camera, plane, camera.Ray(row, col));
+      const size_t pixel = data.Pixel(row, col);
+      const Vec3 h =
+          HomographyVector(camera, state->At(pixel), camera.Ray(row, col));
       LoadPatch(data.window, data.reference, row, col, &scratch->patch);
-      const size_t first =
-          (static_cast<size_t>(row) * data.width + col) * views.count;
+      const size_t first = pixel * views.count;
       uint16_t* cost = state->cost.data() + first;
       std::fill_n(state->prob.data() + first, views.count, EncodeProb(0.5f));
       for (int m = 0; m < views.count; ++m) {
@@ -270,7 +241,7 @@ HWY_ATTR void ComputeCostsImpl(const ProblemData& data, int begin, int end,
             CorrelationCost(data.window, scratch->patch, data.sources[m],
                             ComputeWarp(views, m, row, col, h)));
       }
-      if (!pause.GoOnAfterPixel()) {
+      if (!check.AfterPixel()) {
         return;
       }
     }
@@ -336,23 +307,24 @@ SweepScratch::SweepScratch(const ProblemData& data) : patch(data.window) {
   pixel.order = order_.data();
   pixel.projection = projection_.data();
   pixel.uniform = uniform_.data();
-  pixel.plane = planes_.data();
+  pixel.hypothesis = hypotheses_.data();
   pixel.homography = homographies_.data();
   pixel.sum = sums_.data();
 }
 
 void SweepLines(const ProblemData& data, const SweepParams& params,
-                const SweepGuide& guide, Direction direction, int begin,
-                int end, const GoOn& go_on, SweepState* state,
+                const SweepGuide<float>& guide, int begin, int end,
+                const ContinueCheck& should_continue, SweepState* state,
                 SweepScratch* scratch) {
   HWY_DYNAMIC_DISPATCH(SweepLinesImpl)
-  (data, params, guide, direction, begin, end, go_on, state, scratch);
+  (data, params, guide, begin, end, should_continue, state, scratch);
 }
 
 void ComputeCosts(const ProblemData& data, int begin, int end,
-                  const GoOn& go_on, SweepState* state, SweepScratch* scratch) {
+                  const ContinueCheck& should_continue, SweepState* state,
+                  SweepScratch* scratch) {
   HWY_DYNAMIC_DISPATCH(ComputeCostsImpl)
-  (data, begin, end, go_on, state, scratch);
+  (data, begin, end, should_continue, state, scratch);
 }
 
 void PreparePatch(const ProblemData& data, int row, int col, Patch* patch) {

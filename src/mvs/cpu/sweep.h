@@ -2,9 +2,9 @@
 #define TAPA_SRC_MVS_CPU_SWEEP_H_
 
 #include <array>
-#include <functional>
 #include <vector>
 
+#include "src/base/progress.h"
 #include "src/mvs/cpu/problem_data.h"
 #include "src/mvs/sweep/hypotheses.h"
 #include "src/mvs/sweep/pixel_scratch.h"
@@ -29,37 +29,24 @@ class SweepScratch {
   std::vector<int> order_;
   std::vector<Projection> projection_;
   std::array<float, kDrawBlock> uniform_;
-  std::array<Plane, kNumHypotheses> planes_;
+  std::array<DepthNormal, kNumHypotheses> hypotheses_;
   std::array<Vec3, kNumHypotheses> homographies_;
   std::array<float, kNumHypotheses> sums_;
 };
 
-// The four directions of an iteration, in this order. Lines are columns in
-// vertical directions, otherwise rows.
-enum class Direction { kDown, kLeft, kUp, kRight };
-
-// Number of lines of a sweep in this direction.
-inline int NumLines(const ProblemData& data, Direction direction) {
-  return direction == Direction::kDown || direction == Direction::kUp
-             ? data.width
-             : data.height;
-}
-
-// Asked every few milliseconds whether to go on; if not, the functions below
-// return before they are done.
-using GoOn = std::function<bool()>;
-
 // Sweeps along lines [begin, end). Different lines may be swept at the same
-// time.
+// time. This function and the next call should_continue every few milliseconds
+// and return before they are done once it returns false.
 void SweepLines(const ProblemData& data, const SweepParams& params,
-                const SweepGuide& guide, Direction direction, int begin,
-                int end, const GoOn& go_on, SweepState* state,
+                const SweepGuide<float>& guide, int begin, int end,
+                const ContinueCheck& should_continue, SweepState* state,
                 SweepScratch* scratch);
 
 // Computes the photometric costs of the state's estimates in rows [begin, end)
 // and sets their selection probabilities to one half.
 void ComputeCosts(const ProblemData& data, int begin, int end,
-                  const GoOn& go_on, SweepState* state, SweepScratch* scratch);
+                  const ContinueCheck& should_continue, SweepState* state,
+                  SweepScratch* scratch);
 
 // The two steps of a photometric cost, for tests and benchmarks: the patch
 // around a reference pixel, and its correlation with source view m.

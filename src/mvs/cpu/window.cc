@@ -11,9 +11,7 @@ constexpr int kMaxLanes = 16;
 
 }  // namespace
 
-Window::Window(const Options& options)
-    : radius(options.window_radius), step(options.window_step) {
-  row_samples = 2 * radius / step + 1;
+Window::Window(const Options& options) : WindowShape(options) {
   num_samples = row_samples * row_samples;
   padded_samples = (num_samples + kMaxLanes - 1) / kMaxLanes * kMaxLanes;
   dx = MakeAligned<float>(padded_samples);
@@ -21,8 +19,6 @@ Window::Window(const Options& options)
   spatial_weight = MakeAligned<float>(padded_samples);
   color_weight = MakeAligned<float>(256);
 
-  const double sigma_spatial =
-      options.sigma_spatial > 0 ? options.sigma_spatial : radius;
   for (int i = 0; i < num_samples; ++i) {
     const int y = i / row_samples * step - radius;
     const int x = i % row_samples * step - radius;
@@ -32,7 +28,7 @@ Window::Window(const Options& options)
         std::exp(-(x * x + y * y) / (2 * sigma_spatial * sigma_spatial)));
   }
   for (int difference = 0; difference < 256; ++difference) {
-    const double d = difference / 255.0 / options.sigma_color;
+    const double d = difference / 255.0 / sigma_color;
     color_weight[difference] = static_cast<float>(std::exp(-0.5 * d * d));
   }
 }

@@ -5,19 +5,16 @@
 
 #include "src/base/map.h"
 #include "src/mvs/cpu/aligned.h"
-#include "src/mvs/options.h"
+#include "src/mvs/window_shape.h"
 
 namespace tapa {
 
 // The samples of the correlation window, row by row, padded to whole SIMD
 // vectors with samples of weight 0.
-struct Window {
+struct Window : WindowShape {
   explicit Window(const Options& options);
 
-  int radius;
-  int step;
-  // Samples in a row, in the window, and in the window with padding.
-  int row_samples;
+  // Samples in the window, and with padding.
   int num_samples;
   int padded_samples;
   // Offsets of the samples from the centre, in pixels.

@@ -7,12 +7,14 @@
 
 #include "src/mvs/backends.h"
 #include "src/mvs/camera_table.h"
-#include "src/mvs/cuda/device_profile.h"
 #include "src/mvs/cuda/kernels.h"
 #include "src/mvs/cuda/memory.h"
 #include "src/mvs/cuda/memory_plan.h"
 #include "src/mvs/cuda/memory_share.h"
+#include "src/mvs/cuda/problem_memory.h"
 #include "src/mvs/device_error.h"
+#include "src/mvs/sweep/consistency_mask.h"
+#include "src/mvs/testing.h"
 
 namespace tapa {
 namespace {
@@ -20,90 +22,25 @@ namespace {
 // Lines are shared out among streams: while the last warps of one end a launch,
 // those of others go on.
 constexpr int kNumStreams = 4;
-// Launches of a stream that wait in line while the host looks whether to go on.
+// Launches of a stream that wait in line while the host looks whether to
+// continue.
 constexpr int kQueueLength = 4;
-// Rows whose first costs are computed before the host looks whether to go on.
+// Rows whose first costs are computed before the host looks whether to
+// continue.
 constexpr int kRowsAtATime = 128;
 
-// The images of a problem as textures.
-class ProblemTextures {
- public:
-  ProblemTextures(const Problem& problem, const MemoryPlan& plan)
-      : reference_(plan.width, plan.height, 0),
-        sources_(plan.max_source_width, plan.max_source_height,
-                 plan.num_views) {
-    reference_.Upload(*problem.reference.image, 0);
-    if (plan.geometric) {
-      depths_ = DeviceImage<float>(plan.max_source_width,
-                                   plan.max_source_height, plan.num_views);
-      depth_texture_ = Texture(depths_.array(), Reading::kNearest);
-    }
-    for (int m = 0; m < plan.num_views; ++m) {
-      sources_.Upload(*problem.sources[m].image, m);
-      if (plan.geometric) {
-        depths_.Upload(*problem.sources[m].depth, m);
-      }
-    }
-    reference_texture_ = Texture(reference_.array(), Reading::kNearest);
-    source_texture_ = Texture(sources_.array(), Reading::kBilinear);
-    exact_source_texture_ = Texture(sources_.array(), Reading::kNearest);
-  }
-
-  TextureObjects objects() const {
-    return {reference_texture_.object(), source_texture_.object(),
-            exact_source_texture_.object(), depth_texture_.object()};
-  }
-
- private:
-  // Textures go before the images that they read.
-  DeviceImage<uint8_t> reference_;
-  DeviceImage<uint8_t> sources_;
-  DeviceImage<float> depths_;
-  Texture reference_texture_;
-  Texture source_texture_;
-  Texture exact_source_texture_;
-  Texture depth_texture_;
-};
-
-// A PlaneSet in device memory.
-class DevicePlanes {
- public:
-  DevicePlanes() = default;
-  explicit DevicePlanes(size_t num_pixels) : index_(num_pixels) {}
-
-  void Set(const PlaneSet& set) {
-    is_set_ = !set.index.empty();
-    if (!is_set_) {
-      return;
-    }
-    if (set.planes.size() > planes_.size()) {
-      planes_ = DeviceArray<ScenePlane>(set.planes.size());
-    }
-    planes_.Upload(set.planes.data(), set.planes.size());
-    index_.Upload(set.index.data(), set.index.size());
-  }
-
-  PlaneTable table() const {
-    return is_set_ ? PlaneTable{planes_.data(), index_.data()} : PlaneTable();
-  }
-
- private:
-  bool is_set_ = false;
-  DeviceArray<ScenePlane> planes_;
-  DeviceArray<uint16_t> index_;
-};
-
-KernelKind ChooseKernel(const Options& options, int num_views) {
-  const WindowShape window = WindowShape::FromOptions(options);
+KernelKind ChooseKernel(const Options& options, const CudaSwitches& switches,
+                        int num_views) {
+  const WindowShape window(options);
   const bool common = CommonSizes::Fits(window, num_views);
-  if (options.naive_kernel && !common) {
+  if (switches.naive_kernel && !common) {
     throw std::invalid_argument(
         "the naive kernel is made for 11 by 11 samples and at most 32 views");
   }
-  return options.naive_kernel       ? KernelKind::kNaive
-         : options.precise_textures ? KernelKind::kPrecise
-         : common                   ? KernelKind::kCommon
-                                    : KernelKind::kAny;
+  return switches.naive_kernel       ? KernelKind::kNaive
+         : switches.precise_textures ? KernelKind::kPrecise
+         : common                    ? KernelKind::kCommon
+                                     : KernelKind::kAny;
 }
 
 using Clock = std::chrono::steady_clock;
@@ -124,23 +61,15 @@ void DescribeDevice(int device, DeviceProfile* profile) {
   profile->clock_hz = 1e3 * kilohertz;
 }
 
-void DescribeKernel(const KernelLaunch& launch, DeviceProfile* profile) {
-  const KernelResources resources = SweepResources(launch);
-  profile->registers = resources.registers;
-  profile->shared_bytes = resources.shared_bytes;
-  profile->occupancy = resources.occupancy;
-  profile->resident_lines = resources.resident_lines;
-}
-
-class CudaBackend : public Backend {
+class CudaBackend : public BackendForTesting {
  public:
   CudaBackend(const Options& options, const Problem& problem,
-              DeviceProfile* profile)
-      : profile_(profile),
+              const CudaSwitches& switches)
+      : profile_(switches.profile),
         plan_(options, problem),
         share_(options.device, plan_.Bytes()),
         textures_(problem, plan_),
-        planes_(plan_.pixels),
+        estimates_(plan_.pixels),
         cost_(plan_.pixel_views),
         prob_(plan_.pixel_views),
         backward_(plan_.backward),
@@ -149,7 +78,7 @@ class CudaBackend : public Backend {
         previous_(plan_.previous),
         cameras_(SourceCameras::kNumCoefficients * plan_.num_views),
         task_(MakeTask(options, problem)),
-        launch_(task_, ChooseKernel(options, plan_.num_views)) {
+        launch_(task_, ChooseKernel(options, switches, plan_.num_views)) {
     if (plan_.tapa) {
       textureness_ = DeviceArray<uint16_t>(plan_.pixels);
       fine_ = DevicePlanes(plan_.pixels);
@@ -164,12 +93,12 @@ class CudaBackend : public Backend {
   }
 
   bool SetEstimate(Map<float> depth, Map<Vec3> normal,
-                   const More& more) override {
-    std::vector<PackedPlane> packed(plan_.pixels);
+                   const ProgressCallback& progress) override {
+    std::vector<PackedDepthNormal> packed(plan_.pixels);
     for (size_t i = 0; i < packed.size(); ++i) {
       packed[i] = Pack({depth.data()[i], normal.data()[i]});
     }
-    planes_.Upload(packed.data(), packed.size());
+    estimates_.Upload(packed.data(), packed.size());
     is_downloaded_ = false;
     const Clock::time_point begin = Clock::now();
     for (int row = 0; row < plan_.height; row += kRowsAtATime) {
@@ -178,8 +107,8 @@ class CudaBackend : public Backend {
         LaunchInitialize(launch_, task_, textures_.objects(), first, last,
                          stream.get());
       });
-      if (!GoOnAfter(row / kRowsAtATime,
-                     static_cast<double>(end) / plan_.height, more)) {
+      if (!ContinuesAfter(row / kRowsAtATime,
+                          static_cast<double>(end) / plan_.height, progress)) {
         return false;
       }
     }
@@ -190,10 +119,11 @@ class CudaBackend : public Backend {
     return true;
   }
 
-  bool Sweep(const SweepParams& params, const More& more) override {
+  bool Sweep(const SweepParams& params,
+             const ProgressCallback& progress) override {
     is_downloaded_ = false;
     task_.params = params;
-    has_support_ = params.filter;
+    has_masks_ = params.check_consistency;
     Clock::time_point begin = Clock::now();
     const int num_lines = task_.NumLines();
     ForStreams(0, num_lines, [this](int first, int last, const Stream& stream) {
@@ -212,8 +142,8 @@ class CudaBackend : public Backend {
         LaunchSweepPieces(launch_, task_, textures_.objects(), piece, end,
                           first, last, stream.get());
       });
-      if (!GoOnAfter(piece / per_launch, static_cast<double>(end) / num_pieces,
-                     more)) {
+      if (!ContinuesAfter(piece / per_launch,
+                          static_cast<double>(end) / num_pieces, progress)) {
         return false;
       }
     }
@@ -229,14 +159,14 @@ class CudaBackend : public Backend {
     std::transform(textureness.data(), textureness.data() + codes.size(),
                    codes.begin(), [](float t) { return EncodeTextureness(t); });
     textureness_.Upload(codes.data(), codes.size());
-    task_.textureness = codes.empty() ? nullptr : textureness_.data();
+    task_.guide.textureness = codes.empty() ? nullptr : textureness_.data();
   }
 
   void SetPlanes(PlaneSet fine, PlaneSet coarse) override {
     fine_.Set(fine);
     coarse_.Set(coarse);
-    task_.fine = fine_.table();
-    task_.coarse = coarse_.table();
+    task_.guide.fine = fine_.table();
+    task_.guide.coarse = coarse_.table();
   }
 
   const Map<float>& Depth() override {
@@ -262,8 +192,8 @@ class CudaBackend : public Backend {
     estimate.normal = std::move(normal_);
     estimate.selection_prob.resize(plan_.pixel_views);
     prob_.Download(estimate.selection_prob.data());
-    if (has_support_) {
-      DownloadSupport(&estimate);
+    if (has_masks_) {
+      DownloadMasks(&estimate);
     }
     return estimate;
   }
@@ -275,15 +205,15 @@ class CudaBackend : public Backend {
     task.height = plan_.height;
     task.num_views = plan_.num_views;
     task.geometric = plan_.geometric;
-    task.window = WindowShape::FromOptions(options);
+    task.window = WindowShape(options);
     task.camera = CameraTable(problem).reference();
     task.cameras = cameras_.data();
-    task.planes = planes_.data();
+    task.estimates = estimates_.data();
     task.cost = cost_.data();
     task.prob = prob_.data();
-    task.weight_range = static_cast<float>(options.tapa.weight_range);
-    task.depth_min = problem.depth_min;
-    task.depth_max = problem.depth_max;
+    task.guide.weight_range = static_cast<float>(options.tapa.weight_range);
+    task.guide.depth_min = problem.depth_min;
+    task.guide.depth_max = problem.depth_max;
     task.piece_length = plan_.piece_length;
     task.checkpoints = checkpoints_.data();
     task.backward = backward_.data();
@@ -318,15 +248,16 @@ class CudaBackend : public Backend {
   }
 
   // After launch number `launch` of all streams: waits for the oldest of the
-  // last kQueueLength, while the device goes on with the others, and asks
-  // whether to go on.
-  bool GoOnAfter(int launch, double done, const More& more) {
+  // last kQueueLength, while the device works on the others, and asks whether
+  // to continue.
+  bool ContinuesAfter(int launch, double done,
+                      const ProgressCallback& progress) {
     const int slot = launch % kQueueLength;
     for (int i = 0; i < kNumStreams; ++i) {
       events_[(slot + 1) % kQueueLength][i].Wait();
       events_[slot][i].Record(streams_[i]);
     }
-    if (!more(done)) {
+    if (!progress(done)) {
       WaitForAll();
       return false;
     }
@@ -343,8 +274,8 @@ class CudaBackend : public Backend {
     if (is_downloaded_) {
       return;
     }
-    std::vector<PackedPlane> packed(plan_.pixels);
-    planes_.Download(packed.data());
+    std::vector<PackedDepthNormal> packed(plan_.pixels);
+    estimates_.Download(packed.data());
     depth_ = Map<float>(plan_.width, plan_.height);
     normal_ = Map<Vec3>(plan_.width, plan_.height);
     for (size_t i = 0; i < packed.size(); ++i) {
@@ -355,9 +286,9 @@ class CudaBackend : public Backend {
   }
 
   // What the last sweep left where the costs were, see SweepTask::cost.
-  void DownloadSupport(Estimate* estimate) const {
+  void DownloadMasks(Estimate* estimate) const {
     const size_t n = plan_.num_views;
-    const size_t mask_bytes = (n + 7) / 8;
+    const int mask_bytes = ConsistencyMaskBytes(plan_.num_views);
     UninitializedVector<uint16_t> cost(plan_.pixel_views);
     cost_.Download(cost.data());
     estimate->consistent.resize(plan_.pixels * mask_bytes);
@@ -379,13 +310,13 @@ class CudaBackend : public Backend {
   // Chooses the device for all that follows.
   MemoryShare share_;
   ProblemTextures textures_;
-  DeviceArray<PackedPlane> planes_;
+  DeviceArray<PackedDepthNormal> estimates_;
   DeviceArray<uint16_t> cost_;
   DeviceArray<uint16_t> prob_;
   DeviceArray<float> backward_;
   DeviceArray<float> checkpoints_;
   DeviceArray<float> forward_;
-  DeviceArray<Plane> previous_;
+  DeviceArray<DepthNormal> previous_;
   DeviceArray<float> cameras_;
   DeviceArray<uint16_t> textureness_;
   DevicePlanes fine_;
@@ -395,8 +326,8 @@ class CudaBackend : public Backend {
   // Behind all that their work uses.
   Stream streams_[kNumStreams];
   Event events_[kQueueLength][kNumStreams];
-  // Whether the last sweep had the filter on.
-  bool has_support_ = false;
+  // Whether the last sweep left masks of consistent views.
+  bool has_masks_ = false;
   // The estimate on the host, while it is that on the device.
   bool is_downloaded_ = false;
   Map<float> depth_;
@@ -405,12 +336,12 @@ class CudaBackend : public Backend {
 
 }  // namespace
 
-std::unique_ptr<Backend> MakeCudaBackend(const Options& options,
-                                         const Problem& problem,
-                                         DeviceProfile* profile) {
+std::unique_ptr<BackendForTesting> MakeCudaBackendForTesting(
+    const Options& options, const Problem& problem,
+    const CudaSwitches& switches) {
   while (true) {
     try {
-      return std::make_unique<CudaBackend>(options, problem, profile);
+      return std::make_unique<CudaBackend>(options, problem, switches);
     } catch (const DeviceMemoryError&) {
       // Others of this program may have what is missing.
       if (!MemoryShare::WaitForEnd(options.device)) {
@@ -418,6 +349,11 @@ std::unique_ptr<Backend> MakeCudaBackend(const Options& options,
       }
     }
   }
+}
+
+std::unique_ptr<Backend> MakeCudaBackend(const Options& options,
+                                         const Problem& problem) {
+  return MakeCudaBackendForTesting(options, problem);
 }
 
 }  // namespace tapa

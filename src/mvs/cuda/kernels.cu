@@ -9,6 +9,7 @@
 #include "src/mvs/cuda/sweep_body.h"
 #include "src/mvs/device_error.h"
 #include "src/mvs/sweep/lanes.h"
+#include "src/mvs/testing.h"
 
 namespace tapa {
 
@@ -280,7 +281,7 @@ void LaunchSweepPieces(const KernelLaunch& launch, const SweepTask& task,
          task, textures, begin_piece, end_piece, begin, end);
 }
 
-KernelResources SweepResources(const KernelLaunch& launch) {
+void DescribeKernel(const KernelLaunch& launch, DeviceProfile* profile) {
   const void* kernel =
       reinterpret_cast<const void*>(SweepKernelOf(launch.kind));
   cudaFuncAttributes attributes;
@@ -294,15 +295,12 @@ KernelResources SweepResources(const KernelLaunch& launch) {
   CheckCuda(cudaGetDevice(&device), "asking for the GPU");
   CheckCuda(cudaGetDeviceProperties(&properties, device),
             "asking for the GPU's properties");
-  KernelResources result;
-  result.registers = attributes.numRegs;
-  result.shared_bytes = attributes.sharedSizeBytes + launch.shared_bytes;
-  result.local_bytes = attributes.localSizeBytes;
-  result.occupancy = static_cast<double>(blocks) * launch.block_threads /
-                     properties.maxThreadsPerMultiProcessor;
-  result.resident_lines =
+  profile->registers = attributes.numRegs;
+  profile->shared_bytes = attributes.sharedSizeBytes + launch.shared_bytes;
+  profile->occupancy = static_cast<double>(blocks) * launch.block_threads /
+                       properties.maxThreadsPerMultiProcessor;
+  profile->resident_lines =
       blocks * launch.lines_per_block * properties.multiProcessorCount;
-  return result;
 }
 
 }  // namespace tapa

@@ -3,12 +3,11 @@
 
 #include <cuda_runtime_api.h>
 
-#include <string>
-#include <vector>
-
 #include "src/mvs/cuda/sweep_task.h"
 
 namespace tapa {
+
+struct DeviceProfile;
 
 // What kernels read images through; 0 where it is not there.
 struct TextureObjects {
@@ -66,16 +65,7 @@ void LaunchSweepPieces(const KernelLaunch& launch, const SweepTask& task,
 int PiecesPerLaunch(const KernelLaunch& launch, const SweepTask& task);
 
 // What the sweep's kernel takes on the current device.
-struct KernelResources {
-  int registers;
-  size_t shared_bytes;
-  size_t local_bytes;
-  // Share of the device's threads that can be resident, 0 to 1.
-  double occupancy;
-  // Lines that can be swept at the same time.
-  int resident_lines;
-};
-KernelResources SweepResources(const KernelLaunch& launch);
+void DescribeKernel(const KernelLaunch& launch, DeviceProfile* profile);
 
 }  // namespace tapa
 

@@ -1,28 +1,12 @@
 #ifndef TAPA_SRC_MVS_CUDA_LAYOUT_H_
 #define TAPA_SRC_MVS_CUDA_LAYOUT_H_
 
-#include <cstdint>
-
-#include "src/mvs/options.h"
 #include "src/mvs/sweep/host_device.h"
 #include "src/mvs/sweep/hypotheses.h"
 #include "src/mvs/sweep/pixel_scratch.h"
+#include "src/mvs/window_shape.h"
 
 namespace tapa {
-
-// The correlation window, as kernels read it.
-struct WindowShape {
-  int radius = 5;
-  int step = 1;
-  // Samples in a row and in a column.
-  int row_samples = 11;
-  // Factors in the exponent of the bilateral weight: of the squared difference
-  // in intensity (0 to 255) and of the squared distance in pixels.
-  float color_scale = 0;
-  float spatial_scale = 0;
-
-  static WindowShape FromOptions(const Options& options);
-};
 
 // Sizes that a kernel knows when it is compiled, so that addresses in the
 // scratch become constants and loops over the window are unrolled.
@@ -68,10 +52,10 @@ TAPA_INLINE int PatchStride(int row_samples) {
 // units' cache gets what blocks do not share.
 constexpr int kViewArrays = 6 + kNumHypotheses - 1;
 constexpr int kGeometricArrays = 3 + kNumDepths;
-constexpr int kPlaneWords = sizeof(Plane) / 4;
+constexpr int kDepthNormalWords = sizeof(DepthNormal) / 4;
 constexpr int kVec3Words = sizeof(Vec3) / 4;
 constexpr int kFixedWords =
-    kDrawBlock + kNumHypotheses * (kPlaneWords + kVec3Words + 1);
+    kDrawBlock + kNumHypotheses * (kDepthNormalWords + kVec3Words + 1);
 // Keeps what follows, pairs of words, aligned.
 constexpr int kPaddedFixedWords = (kFixedWords + 1) / 2 * 2;
 
@@ -111,9 +95,9 @@ TAPA_INLINE PixelScratch ArrangeScratch(const WindowShape& window,
   float* fixed = words + kViewArrays * stride;
   s.uniform = fixed;
   s.sum = fixed + kDrawBlock;
-  s.plane = reinterpret_cast<Plane*>(s.sum + kNumHypotheses);
+  s.hypothesis = reinterpret_cast<DepthNormal*>(s.sum + kNumHypotheses);
   s.homography =
-      reinterpret_cast<Vec3*>(s.sum + (1 + kPlaneWords) * kNumHypotheses);
+      reinterpret_cast<Vec3*>(s.sum + (1 + kDepthNormalWords) * kNumHypotheses);
   *patch = reinterpret_cast<PatchSample*>(fixed + kPaddedFixedWords);
   float* geometric =
       words + CommonScratchWords<Lanes, Sizes>(window, num_views);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "src/mvs/cuda/packed_plane.h"
+#include "src/mvs/cuda/packed_depth_normal.h"
 
 namespace tapa {
 namespace {
@@ -43,10 +43,10 @@ MemoryPlan::MemoryPlan(const Options& options, const Problem& problem)
 }
 
 size_t MemoryPlan::Bytes() const {
-  size_t bytes = pixels * (sizeof(PackedPlane) + sizeof(uint8_t)) +
+  size_t bytes = pixels * (sizeof(PackedDepthNormal) + sizeof(uint8_t)) +
                  pixel_views * 2 * sizeof(uint16_t) + source_pixels +
                  (backward + checkpoints + forward) * sizeof(float) +
-                 previous * sizeof(Plane);
+                 previous * sizeof(DepthNormal);
   if (geometric) {
     bytes += source_pixels * sizeof(float);
   }

@@ -3,6 +3,7 @@
 #include "src/mvs/backends.h"
 #include "src/mvs/device_error.h"
 #include "src/mvs/devices.h"
+#include "src/mvs/testing.h"
 
 namespace tapa {
 
@@ -12,9 +13,14 @@ DeviceList FindDevices() {
   return list;
 }
 
-std::unique_ptr<Backend> MakeCudaBackend(const Options&, const Problem&,
-                                         DeviceProfile*) {
+std::unique_ptr<BackendForTesting> MakeCudaBackendForTesting(
+    const Options&, const Problem&, const CudaSwitches&) {
   throw DeviceError(FindDevices().why_none);
+}
+
+std::unique_ptr<Backend> MakeCudaBackend(const Options& options,
+                                         const Problem& problem) {
+  return MakeCudaBackendForTesting(options, problem);
 }
 
 }  // namespace tapa

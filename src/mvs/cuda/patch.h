@@ -88,7 +88,7 @@ TAPA_INLINE Moments SumSamples(const WindowShape& window,
       float u = p.x * inv_z;
       float v = p.y * inv_z;
       if (!kInFront) {
-        // Also what is not a number.
+        // Also NaN.
         u = p.z > 0.0f && u > kOutside ? u : kOutside;
         v = v > kOutside ? v : kOutside;
       }

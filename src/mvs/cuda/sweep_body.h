@@ -3,7 +3,7 @@
 
 #include "src/mvs/cuda/patch.h"
 #include "src/mvs/cuda/sweep_task.h"
-#include "src/mvs/plane_set.h"
+#include "src/mvs/sweep/consistency_mask.h"
 #include "src/mvs/sweep/sweep_pixel.h"
 
 // What kernels do, as functions that also run on the host, for tests: `Lanes`
@@ -16,8 +16,7 @@ namespace tapa {
 // Computes the checkpoints of a line.
 template <class Lanes>
 TAPA_INLINE void ComputeCheckpoints(const SweepTask& task, int index) {
-  const SweepLine line =
-      LineOf(task.Direction(), index, task.width, task.height);
+  const SweepLine line = task.Line(index);
   const int n = task.num_views;
   for (int m = Lanes::First(); m < n; m += Lanes::Step()) {
     float message = ViewSelection::kBorderMessage;
@@ -57,41 +56,20 @@ TAPA_INLINE void ComputeBackwardMessages(const SweepTask& task,
   }
 }
 
-TAPA_INLINE Plane FindPlane(const SweepTask& task, const PlaneTable& table,
-                            size_t pixel, const Vec3& ray) {
-  if (table.index == nullptr || table.index[pixel] == PlaneSet::kNone) {
-    return Plane();
-  }
-  return ProposedPlane(table.planes[table.index[pixel]], ray, task.depth_min,
-                       task.depth_max);
-}
-
-TAPA_INLINE PixelGuide GuideOf(const SweepTask& task, size_t pixel,
-                               const Vec3& ray) {
-  PixelGuide guide;
-  if (task.textureness != nullptr) {
-    guide.weights = TextureWeights::FromTextureness(
-        DecodeTextureness(task.textureness[pixel]), task.weight_range);
-  }
-  guide.fine = FindPlane(task, task.fine, pixel, ray);
-  guide.coarse = FindPlane(task, task.coarse, pixel, ray);
-  return guide;
-}
-
-// Writes which views support the estimate, and what was chosen, where the
-// pixel's costs were. flags: one for each view.
+// Writes which views are consistent with the estimate, and what was chosen,
+// where the pixel's costs were. flags: one for each view.
 template <class Lanes>
-TAPA_INLINE void StoreSupport(const SweepTask& task, size_t pixel,
-                              const Choice& choice, const float* flags) {
+TAPA_INLINE void StoreConsistency(const SweepTask& task, size_t pixel,
+                                  const Choice& choice, const float* flags) {
   const int n = task.num_views;
-  const int mask_bytes = (n + 7) / 8;
+  const int mask_bytes = ConsistencyMaskBytes(n);
   uint8_t* to = reinterpret_cast<uint8_t*>(task.cost + pixel * n);
   for (int i = Lanes::First(); i < mask_bytes; i += Lanes::Step()) {
-    unsigned bits = 0;
+    uint8_t bits = 0;
     for (int m = 8 * i; m < 8 * i + 8 && m < n; ++m) {
-      bits |= choice.keep && flags[m] > 0.0f ? 1u << (m % 8) : 0u;
+      bits |= ConsistencyBit(m, choice.is_consistent && flags[m] > 0.0f);
     }
-    to[i] = static_cast<uint8_t>(bits);
+    to[i] = bits;
   }
   if (Lanes::First() == 0) {
     to[mask_bytes] = static_cast<uint8_t>(choice.hypothesis);
@@ -105,49 +83,59 @@ TAPA_INLINE void StorePixel(const SweepTask& task, size_t pixel,
   const int n = task.num_views;
   for (int m = Lanes::First(); m < n; m += Lanes::Step()) {
     task.prob[pixel * n + m] = EncodeProb(s.prob[m]);
-    if (!task.params.filter) {
+    if (!task.params.check_consistency) {
       task.cost[pixel * n + m] = EncodeCost(s.cost[m]);
     }
   }
   if (Lanes::First() == 0) {
-    task.planes[pixel] =
-        choice.keep ? Pack(choice.plane) : PackedPlane{0.0f, kNoNormal};
+    task.estimates[pixel] = choice.is_consistent
+                                ? Pack(choice.estimate)
+                                : PackedDepthNormal{0.0f, kNoNormal};
   }
-  if (task.params.filter) {
+  if (task.params.check_consistency) {
     Lanes::Sync();
-    StoreSupport<Lanes>(task, pixel, choice, flags);
+    StoreConsistency<Lanes>(task, pixel, choice, flags);
   }
 }
 
 // Sweeps one pixel. s: the scratch, which carries the forward messages and says
-// where the backward ones are.
+// where the backward ones are. Returns what the next pixel looks back at.
 template <class Lanes, class Sizes, class Textures>
-TAPA_INLINE Choice SweepTaskPixel(const SweepTask& task,
-                                  const SourceCameras& views,
-                                  const Textures& textures, int row, int col,
-                                  const Plane& previous,
-                                  const Vec3& previous_ray,
-                                  PatchSample* samples, PixelScratch* s) {
+TAPA_INLINE PreviousPixel SweepTaskPixel(const SweepTask& task,
+                                         const SourceCameras& views,
+                                         const Textures& textures, int row,
+                                         int col, const PreviousPixel& previous,
+                                         PatchSample* samples,
+                                         const PixelScratch& s) {
   const size_t pixel = task.Pixel(row, col);
   const int n = task.num_views;
   const PatchStatistics patch =
       LoadPatch<Lanes, Sizes>(task.window, textures, row, col, samples);
   for (int m = Lanes::First(); m < n; m += Lanes::Step()) {
-    s->cost[m] = DecodeCost(task.cost[pixel * n + m]);
-    s->prob[m] = DecodeProb(task.prob[pixel * n + m]);
+    s.cost[m] = DecodeCost(task.cost[pixel * n + m]);
+    s.prob[m] = DecodeProb(task.prob[pixel * n + m]);
   }
   // The distribution's memory is free by the time views are judged.
-  float* const flags = s->cdf;
+  float* const flags = s.cdf;
   PixelSources<Lanes, Sizes, Textures> sources(task.window, textures, samples,
                                                patch, flags);
-  const Choice choice = SweepPixel<Lanes>(
-      task.params, task.camera, views, sources, row, col, pixel,
-      Unpack(task.planes[pixel]), previous, previous_ray,
-      GuideOf(task, pixel, task.camera.Ray(row, col)), s);
-  StorePixel<Lanes>(task, pixel, choice, *s, flags);
+  const Vec3 ray = task.camera.Ray(row, col);
+  const PixelContext context = {
+      task.params,
+      task.camera,
+      views,
+      s,
+      static_cast<float>(row),
+      static_cast<float>(col),
+      ray,
+      Random(task.params.seed, pixel, task.params.index),
+      Unpack(task.estimates[pixel]),
+      task.guide.At(pixel, ray)};
+  const Choice choice = SweepPixel<Lanes>(context, previous, sources);
+  StorePixel<Lanes>(task, pixel, choice, s, flags);
   // The next pixel overwrites what lanes still read.
   Lanes::Sync();
-  return choice;
+  return {choice.estimate, ray};
 }
 
 // Sweeps a piece of a line. words: the scratch, see layout.h.
@@ -155,8 +143,7 @@ template <class Lanes, class Sizes, class Textures>
 TAPA_INLINE void SweepPiece(const SweepTask& task, const SourceCameras& views,
                             const Textures& textures, int index, int piece,
                             float* words) {
-  const SweepLine line =
-      LineOf(task.Direction(), index, task.width, task.height);
+  const SweepLine line = task.Line(index);
   const int n = task.num_views;
   const int begin = piece * task.piece_length;
   const int rest = line.length - begin;
@@ -171,29 +158,25 @@ TAPA_INLINE void SweepPiece(const SweepTask& task, const SourceCameras& views,
     s.forward[m] = begin == 0 ? ViewSelection::kBorderMessage : forward[m];
   }
   const int before = begin == 0 ? 0 : begin - 1;
-  Plane previous =
-      begin == 0 ? Unpack(task.planes[task.Pixel(line.Row(0), line.Col(0))])
-                 : task.previous[index];
-  Vec3 previous_ray = task.camera.Ray(line.Row(before), line.Col(before));
+  PreviousPixel previous = {
+      begin == 0 ? Unpack(task.estimates[task.Pixel(line.Row(0), line.Col(0))])
+                 : task.previous[index],
+      task.camera.Ray(line.Row(before), line.Col(before))};
   Lanes::Sync();
 
   for (int i = begin; i < end; ++i) {
-    const int row = line.Row(i);
-    const int col = line.Col(i);
     s.backward =
         task.backward +
         (static_cast<size_t>(index) * task.piece_length + i - begin) * n;
-    previous = SweepTaskPixel<Lanes, Sizes>(task, views, textures, row, col,
-                                            previous, previous_ray, samples, &s)
-                   .plane;
-    previous_ray = task.camera.Ray(row, col);
+    previous = SweepTaskPixel<Lanes, Sizes>(task, views, textures, line.Row(i),
+                                            line.Col(i), previous, samples, s);
   }
 
   for (int m = Lanes::First(); m < n; m += Lanes::Step()) {
     forward[m] = s.forward[m];
   }
   if (Lanes::First() == 0) {
-    task.previous[index] = previous;
+    task.previous[index] = previous.estimate;
   }
 }
 
@@ -224,7 +207,7 @@ TAPA_INLINE void InitializePixel(const SweepTask& task,
       LoadPatch<Lanes, Sizes>(task.window, textures, row, col, samples);
   const PixelSources<Lanes, Sizes, Textures> sources(task.window, textures,
                                                      samples, patch, nullptr);
-  const Vec3 h = HomographyVector(task.camera, Unpack(task.planes[pixel]),
+  const Vec3 h = HomographyVector(task.camera, Unpack(task.estimates[pixel]),
                                   task.camera.Ray(row, col));
   for (int first = 0; first < n; first += Lanes::kNumGroups) {
     const GroupShare share = ShareOfGroup<Lanes>(first, n);

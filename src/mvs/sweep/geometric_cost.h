@@ -18,8 +18,7 @@ TAPA_INLINE Vec3 TransferPoint(const float* const M[9], const float* const v[3],
 }
 
 // A reference pixel's place in a source image: whole numbers are the centres of
-// that image's pixels;
-// (-1, -1) for points that are not in front of the camera.
+// that image's pixels; (-1, -1) for points that are not in front of the camera.
 struct Projection {
   float col;
   float row;
@@ -47,7 +46,7 @@ TAPA_INLINE float ReprojectionError(const SourceCameras& views, int m,
   const float dx = col - p.x * inv_z;
   const float dy = row - p.y * inv_z;
   const float error = sqrtf(dx * dx + dy * dy);
-  // Also false for errors that are not a number.
+  // Also false where the error is NaN.
   const bool valid = (source_depth > 0.0f) & (error < max_cost);
   return valid ? error : max_cost;
 }

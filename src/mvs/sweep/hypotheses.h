@@ -4,11 +4,10 @@
 #include <cmath>
 #include <cstdint>
 
+#include "src/base/angle.h"
 #include "src/mvs/sweep/math.h"
-#include "src/mvs/sweep/plane.h"
+#include "src/mvs/sweep/pixel_context.h"
 #include "src/mvs/sweep/random.h"
-#include "src/mvs/sweep/sweep_params.h"
-#include "src/mvs/sweep/texture_weights.h"
 
 namespace tapa {
 
@@ -24,14 +23,6 @@ enum Hypothesis {
   kFinePlane,
   kCoarsePlane,
   kNumHypotheses
-};
-
-// What a pixel brings to the sweep from outside.
-struct PixelGuide {
-  TextureWeights weights;
-  // Further hypotheses; depth 0: none.
-  Plane fine;
-  Plane coarse;
 };
 
 // Distinct depths among the hypotheses: current, propagated, random, and those
@@ -70,7 +61,7 @@ TAPA_INLINE float RandomDepth(const Random& random, float min_depth,
 inline Vec3 RandomNormal(const Random& random, const Vec3& ray) {
   const float z = 2.0f * random.Uniform(kDrawNormal) - 1.0f;
   const float angle =
-      2.0f * 3.14159265358979f * random.Uniform(kDrawNormal + 1);
+      2.0f * static_cast<float>(kPi) * random.Uniform(kDrawNormal + 1);
   const float radius = std::sqrt(1.0f - z * z);
   const Vec3 normal = {radius * std::cos(angle), radius * std::sin(angle), z};
   return Dot(normal, ray) > 0.0f ? -normal : normal;
@@ -112,27 +103,27 @@ TAPA_INLINE Vec3 PerturbNormal(const Random& random, float perturbation,
 }
 
 // Whether a hypothesis can be true: in front of the camera, and facing it.
-TAPA_INLINE bool IsVisible(const Plane& plane, const Vec3& ray) {
-  return plane.depth > 0.0f && Dot(plane.normal, ray) < 0.0f;
+TAPA_INLINE bool IsVisible(const DepthNormal& hypothesis, const Vec3& ray) {
+  return hypothesis.depth > 0.0f && Dot(hypothesis.normal, ray) < 0.0f;
 }
 
-// The planes of all hypotheses. What is no hypothesis has no visible plane.
-TAPA_INLINE void MakeHypotheses(const SweepParams& params, const Random& random,
-                                const Plane& current, const Plane& previous,
-                                const Vec3& previous_ray, const Vec3& ray,
-                                const PixelGuide& guide, Plane* planes) {
+// All hypotheses. What is none is not visible.
+TAPA_INLINE void MakeHypotheses(const PixelContext& p,
+                                const PreviousPixel& previous,
+                                DepthNormal* hypotheses) {
   const float random_depth =
-      PerturbDepth(random, params.perturbation, current.depth);
+      PerturbDepth(p.random, p.params.perturbation, p.current.depth);
   const Vec3 random_normal =
-      PerturbNormal(random, params.perturbation, current.normal, ray);
-  planes[kCurrent] = current;
-  planes[kPropagated] = {PropagateDepth(previous, previous_ray, ray),
-                         previous.normal};
-  planes[kRandom] = {random_depth, random_normal};
-  planes[kRandomNormal] = {current.depth, random_normal};
-  planes[kRandomDepth] = {random_depth, current.normal};
-  planes[kFinePlane] = guide.fine;
-  planes[kCoarsePlane] = guide.coarse;
+      PerturbNormal(p.random, p.params.perturbation, p.current.normal, p.ray);
+  hypotheses[kCurrent] = p.current;
+  hypotheses[kPropagated] = {
+      PropagateDepth(previous.estimate, previous.ray, p.ray),
+      previous.estimate.normal};
+  hypotheses[kRandom] = {random_depth, random_normal};
+  hypotheses[kRandomNormal] = {p.current.depth, random_normal};
+  hypotheses[kRandomDepth] = {random_depth, p.current.normal};
+  hypotheses[kFinePlane] = p.guide.fine;
+  hypotheses[kCoarsePlane] = p.guide.coarse;
 }
 
 }  // namespace tapa

@@ -6,62 +6,56 @@
 #include "src/mvs/sweep/geometric_cost.h"
 #include "src/mvs/sweep/hypotheses.h"
 #include "src/mvs/sweep/lanes.h"
-#include "src/mvs/sweep/pixel_scratch.h"
-#include "src/mvs/sweep/plane.h"
-#include "src/mvs/sweep/source_cameras.h"
-#include "src/mvs/sweep/sweep_params.h"
-#include "src/mvs/sweep/texture_weights.h"
+#include "src/mvs/sweep/pixel_context.h"
 #include "src/mvs/sweep/view_selection.h"
 
 namespace tapa {
 
 template <class Lanes, class Sources>
-TAPA_INLINE void ComputeGeometricCosts(const SweepParams& params,
-                                       const SourceCameras& views,
-                                       const Sources& sources, float row,
-                                       float col, float depth, PixelScratch* s,
+TAPA_INLINE void ComputeGeometricCosts(const PixelContext& p,
+                                       const Sources& sources, float depth,
                                        float* costs) {
+  const PixelScratch& s = p.scratch;
   TAPA_INDEPENDENT_ITERATIONS
-  for (int m = Lanes::First(); m < views.padded_count; m += Lanes::Step()) {
-    s->projection[m] = ProjectToSource(views, m, row, col, depth);
+  for (int m = Lanes::First(); m < p.views.padded_count; m += Lanes::Step()) {
+    s.projection[m] = ProjectToSource(p.views, m, p.row, p.col, depth);
   }
-  for (int m = Lanes::First(); m < views.count; m += Lanes::Step()) {
-    s->source_depth[m] = sources.Depth(m, s->projection[m]);
+  for (int m = Lanes::First(); m < p.views.count; m += Lanes::Step()) {
+    s.source_depth[m] = sources.Depth(m, s.projection[m]);
   }
   TAPA_INDEPENDENT_ITERATIONS
-  for (int m = Lanes::First(); m < views.padded_count; m += Lanes::Step()) {
-    costs[m] = ReprojectionError(views, m, row, col, s->projection[m],
-                                 s->source_depth[m], params.geom_max_cost);
+  for (int m = Lanes::First(); m < p.views.padded_count; m += Lanes::Step()) {
+    costs[m] = ReprojectionError(p.views, m, p.row, p.col, s.projection[m],
+                                 s.source_depth[m], p.params.geom_max_cost);
   }
 }
 
 // Geometric costs of the depths of all hypotheses that have one.
 template <class Lanes, class Sources>
-TAPA_INLINE void ComputeGeometricCostsOfAll(const SweepParams& params,
-                                            const SourceCameras& views,
-                                            const Sources& sources, float row,
-                                            float col, PixelScratch* s) {
+TAPA_INLINE void ComputeGeometricCostsOfAll(const PixelContext& p,
+                                            const Sources& sources) {
   constexpr Hypothesis kDepths[kNumDepths] = {kCurrent, kPropagated, kRandom,
                                               kFinePlane, kCoarsePlane};
   for (int i = 0; i < kNumDepths; ++i) {
-    const float depth = s->plane[kDepths[i]].depth;
+    const float depth = p.scratch.hypothesis[kDepths[i]].depth;
     if (depth > 0.0f) {
-      ComputeGeometricCosts<Lanes>(params, views, sources, row, col, depth, s,
-                                   s->geom_cost + i * s->stride);
+      ComputeGeometricCosts<Lanes>(p, sources, depth,
+                                   p.scratch.geom_cost + i * p.scratch.stride);
     }
   }
   Lanes::Sync();
 }
 
 // Weighted geometric costs of hypothesis i, summed over the drawn views.
-TAPA_INLINE float SumGeometricCosts(const SweepParams& params,
+TAPA_INLINE float SumGeometricCosts(const PixelContext& p,
                                     const CostWeights& weights, int i,
-                                    int num_distinct, const PixelScratch& s) {
-  if (!params.geometric) {
+                                    int num_distinct) {
+  if (!p.params.geometric) {
     return 0.0f;
   }
+  const PixelScratch& s = p.scratch;
   const float* geom_cost = s.geom_cost + DepthIndex(i) * s.stride;
-  const float weight = weights.geometric * params.geom_weight;
+  const float weight = weights.geometric * p.params.geom_weight;
   float sum = 0.0f;
   for (int k = 0; k < num_distinct; ++k) {
     const int m = s.order[k];
@@ -72,9 +66,10 @@ TAPA_INLINE float SumGeometricCosts(const SweepParams& params,
 
 // The sum so far and the photometric costs of the views at [begin, end) of the
 // order.
-TAPA_INLINE float AddPhotometricCosts(const CostWeights& weights,
+TAPA_INLINE float AddPhotometricCosts(const PixelScratch& s,
+                                      const CostWeights& weights,
                                       const float* cost, int begin, int end,
-                                      float sum, const PixelScratch& s) {
+                                      float sum) {
   for (int k = begin; k < end; ++k) {
     const int m = s.order[k];
     sum += s.num_drawn[m] * weights.photometric * cost[m];
@@ -85,18 +80,18 @@ TAPA_INLINE float AddPhotometricCosts(const CostWeights& weights,
 // Measures the photometric costs of the listed hypotheses in the views at
 // [begin, end) of the order.
 template <class Lanes, class Sources>
-TAPA_INLINE void MeasureCosts(const SourceCameras& views, Sources& sources,
-                              float row, float col, const HypothesisList& list,
-                              int begin, int end, PixelScratch* s) {
+TAPA_INLINE void MeasureCosts(const PixelContext& p, Sources& sources,
+                              const HypothesisList& list, int begin, int end) {
+  const PixelScratch& s = p.scratch;
   const int count = list.count * (end - begin);
   for (int first = 0; first < count; first += Lanes::kNumGroups) {
     const GroupShare share = ShareOfGroup<Lanes>(first, count);
     const int i = list.At(share.item % list.count);
-    const int m = s->order[begin + share.item / list.count];
-    const Warp warp = ComputeWarp(views, m, row, col, s->homography[i]);
+    const int m = s.order[begin + share.item / list.count];
+    const Warp warp = ComputeWarp(p.views, m, p.row, p.col, s.homography[i]);
     const float cost = DecodeCost(EncodeCost(sources.Cost(m, warp)));
     if (share.stores) {
-      s->hypothesis_cost[i * s->stride + m] = cost;
+      s.hypothesis_cost[i * s.stride + m] = cost;
     }
   }
   Lanes::Sync();
@@ -111,29 +106,27 @@ TAPA_INLINE CostWeights WeightsOf(const TextureWeights& weights,
           own ? weights.own.geometric : weights.planar.geometric};
 }
 
-// Adds up, in s->sum, the costs of hypotheses [first, last) over the drawn
-// views. Costs are not negative, so a sum only grows: once it exceeds `limit`
-// the hypothesis cannot win any more, and the rest of its views is not
+// Adds up, in the scratch's `sum`, the costs of hypotheses [first, last) over
+// the drawn views. Costs are not negative, so a sum only grows: once it exceeds
+// `limit` the hypothesis cannot win any more, and the rest of its views is not
 // measured.
 template <class Lanes, class Sources>
-TAPA_INLINE void SumCosts(const SweepParams& params, const RefCamera& camera,
-                          const SourceCameras& views, Sources& sources,
-                          float row, float col, const Vec3& ray, int first,
-                          int last, const TextureWeights& weights, float limit,
-                          int num_distinct, PixelScratch* s) {
+TAPA_INLINE void SumCosts(const PixelContext& p, Sources& sources, int first,
+                          int last, float limit, int num_distinct) {
+  const PixelScratch& s = p.scratch;
   for (int i = first + Lanes::First(); i < last; i += Lanes::Step()) {
-    s->homography[i] = HomographyVector(camera, s->plane[i], ray);
-    s->sum[i] = IsVisible(s->plane[i], ray)
-                    ? SumGeometricCosts(params, WeightsOf(weights, i), i,
-                                        num_distinct, *s)
-                    : INFINITY;
+    s.homography[i] = HomographyVector(p.camera, s.hypothesis[i], p.ray);
+    s.sum[i] = IsVisible(s.hypothesis[i], p.ray)
+                   ? SumGeometricCosts(p, WeightsOf(p.guide.weights, i), i,
+                                       num_distinct)
+                   : INFINITY;
   }
   int begin = 0;
   while (true) {
     Lanes::Sync();
     HypothesisList running;
     for (int i = first; i < last; ++i) {
-      if (s->sum[i] <= limit) {
+      if (s.sum[i] <= limit) {
         running.Add(i);
       }
     }
@@ -142,12 +135,12 @@ TAPA_INLINE void SumCosts(const SweepParams& params, const RefCamera& camera,
     }
     const int next = begin + Lanes::NumViewsAtOnce(running.count);
     const int end = next < num_distinct ? next : num_distinct;
-    MeasureCosts<Lanes>(views, sources, row, col, running, begin, end, s);
+    MeasureCosts<Lanes>(p, sources, running, begin, end);
     for (int n = Lanes::First(); n < running.count; n += Lanes::Step()) {
       const int i = running.At(n);
-      s->sum[i] = AddPhotometricCosts(WeightsOf(weights, i),
-                                      s->hypothesis_cost + i * s->stride, begin,
-                                      end, s->sum[i], *s);
+      s.sum[i] = AddPhotometricCosts(s, WeightsOf(p.guide.weights, i),
+                                     s.hypothesis_cost + i * s.stride, begin,
+                                     end, s.sum[i]);
     }
     begin = end;
   }
@@ -155,27 +148,24 @@ TAPA_INLINE void SumCosts(const SweepParams& params, const RefCamera& camera,
 
 // The hypothesis of the smallest cost.
 template <class Lanes, class Sources>
-TAPA_INLINE int ChooseHypothesis(const SweepParams& params,
-                                 const RefCamera& camera,
-                                 const SourceCameras& views, Sources& sources,
-                                 float row, float col, const Vec3& ray,
-                                 const TextureWeights& weights,
-                                 int num_distinct, PixelScratch* s) {
+TAPA_INLINE int ChooseHypothesis(const PixelContext& p, Sources& sources,
+                                 int num_distinct) {
+  const PixelScratch& s = p.scratch;
+  const CostWeights& own = p.guide.weights.own;
   int best = kCurrent;
   // Added up like those of the other hypotheses, so that equal costs are equal.
-  float best_cost = AddPhotometricCosts(
-      weights.own, s->cost, 0, num_distinct,
-      SumGeometricCosts(params, weights.own, kCurrent, num_distinct, *s), *s);
+  float best_cost =
+      AddPhotometricCosts(s, own, s.cost, 0, num_distinct,
+                          SumGeometricCosts(p, own, kCurrent, num_distinct));
   for (int first = kCurrent + 1; first < kNumHypotheses;
        first += Lanes::kNumSideBySide) {
     const int end = first + Lanes::kNumSideBySide;
     const int last = end < kNumHypotheses ? end : +kNumHypotheses;
-    SumCosts<Lanes>(params, camera, views, sources, row, col, ray, first, last,
-                    weights, best_cost, num_distinct, s);
+    SumCosts<Lanes>(p, sources, first, last, best_cost, num_distinct);
     for (int i = first; i < last; ++i) {
-      if (s->sum[i] <= best_cost) {
+      if (s.sum[i] <= best_cost) {
         best = i;
-        best_cost = s->sum[i];
+        best_cost = s.sum[i];
       }
     }
   }

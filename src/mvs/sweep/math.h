@@ -35,7 +35,7 @@ TAPA_INLINE float ExpNegative(float x) {
 }
 
 // 1 / x, on a GPU with an error of one unit in the last place, and without
-// numbers below 2^-126, which take five instructions more.
+// denormals, which take five instructions more.
 TAPA_INLINE float Reciprocal(float x) {
 #if defined(__CUDA_ARCH__)
   float result;

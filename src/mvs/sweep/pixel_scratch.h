@@ -1,8 +1,8 @@
 #ifndef TAPA_SRC_MVS_SWEEP_PIXEL_SCRATCH_H_
 #define TAPA_SRC_MVS_SWEEP_PIXEL_SCRATCH_H_
 
+#include "src/mvs/sweep/depth_normal.h"
 #include "src/mvs/sweep/geometric_cost.h"
-#include "src/mvs/sweep/plane.h"
 
 namespace tapa {
 
@@ -30,9 +30,9 @@ struct PixelScratch {
   // kDrawBlock random numbers.
   float* uniform;
 
-  // Of each hypothesis: its plane, its HomographyVector, and the cost that is
-  // added up so far.
-  Plane* plane;
+  // Of each hypothesis: depth and normal, its HomographyVector, and the cost
+  // that is added up so far.
+  DepthNormal* hypothesis;
   Vec3* homography;
   float* sum;
   // Elements between the arrays of two hypotheses below.

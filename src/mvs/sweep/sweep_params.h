@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "src/mvs/sweep/line.h"
 #include "src/mvs/sweep/view_prior.h"
 #include "src/mvs/sweep/view_selection.h"
 
@@ -10,7 +11,8 @@ namespace tapa {
 
 // Parameters of one sweep.
 struct SweepParams {
-  // Number of the sweep since the estimation began; keys the random numbers.
+  // Number of the sweep since the estimation began, which says its direction
+  // and keys the random numbers.
   uint32_t index = 0;
   uint64_t seed = 0;
   // Relative size of the random changes, 1 in the first sweep.
@@ -28,12 +30,15 @@ struct SweepParams {
   float geom_weight = 0.3f;
   float geom_max_cost = 3;
 
-  // The last sweep, with the filter on.
-  bool filter = false;
+  // The last sweep: which views are consistent with the estimates is looked
+  // for, and estimates with fewer than filter_min_num_consistent are removed.
+  bool check_consistency = false;
   float filter_min_prob = 0;
   float filter_cos_min_triangulation = 1;
   float filter_geom_max_cost = 1;
   int filter_min_num_consistent = 2;
+
+  TAPA_INLINE Direction SweepDirection() const { return DirectionOf(index); }
 };
 
 }  // namespace tapa

@@ -1,17 +1,11 @@
 #ifndef TAPA_SRC_MVS_SWEEP_SWEEP_PIXEL_H_
 #define TAPA_SRC_MVS_SWEEP_SWEEP_PIXEL_H_
 
-#include <cstdint>
-
-#include "src/mvs/sweep/filter.h"
+#include "src/mvs/sweep/consistent_views.h"
 #include "src/mvs/sweep/hypotheses.h"
 #include "src/mvs/sweep/hypothesis_costs.h"
 #include "src/mvs/sweep/lanes.h"
-#include "src/mvs/sweep/pixel_scratch.h"
-#include "src/mvs/sweep/plane.h"
-#include "src/mvs/sweep/random.h"
-#include "src/mvs/sweep/source_cameras.h"
-#include "src/mvs/sweep/sweep_params.h"
+#include "src/mvs/sweep/pixel_context.h"
 #include "src/mvs/sweep/view_sampling.h"
 #include "src/mvs/sweep/view_selection.h"
 
@@ -23,69 +17,62 @@ namespace tapa {
 
 // The new estimate of a pixel.
 struct Choice {
-  Plane plane;
+  DepthNormal estimate;
   Hypothesis hypothesis;
-  // Whether it passed the filter, if that is on.
-  bool keep;
+  // Whether enough views are consistent with it, or nobody asks.
+  bool is_consistent;
 };
 
+// Messages and selection probabilities from the costs of the new estimate.
+template <class Lanes>
+TAPA_INLINE void UpdateSelection(const PixelContext& p) {
+  const PixelScratch& s = p.scratch;
+  TAPA_INDEPENDENT_ITERATIONS
+  for (int m = Lanes::First(); m < p.views.padded_count; m += Lanes::Step()) {
+    const float forward = ViewSelection::Forward(
+        p.params.selection.Emission(s.cost[m]), s.forward[m]);
+    s.prob[m] = ViewSelection::Probability(forward, s.backward[m], s.prob[m],
+                                           p.params.prev_prob_weight);
+    s.forward[m] = forward;
+  }
+}
+
 // Chooses among the hypotheses of the pixel and updates its costs, messages and
-// selection probabilities. `previous` is the estimate of the pixel before on
-// the sweep's line, with its ray. The choice is that before filtering.
+// selection probabilities. The choice is that before filtering.
 template <class Lanes, class Sources>
-TAPA_INLINE Choice SweepPixel(const SweepParams& params,
-                              const RefCamera& camera,
-                              const SourceCameras& views, Sources& sources,
-                              int row, int col, uint64_t pixel,
-                              const Plane& current, const Plane& previous,
-                              const Vec3& previous_ray, const PixelGuide& guide,
-                              PixelScratch* s) {
-  const Random random(params.seed, pixel, params.index);
-  const Vec3 ray = camera.Ray(row, col);
-  ComputeSamplingDistribution<Lanes>(params, camera, views, row, col, current,
-                                     ray, s);
-  const int num_distinct = DrawViews<Lanes>(params, random, views, s);
+TAPA_INLINE Choice SweepPixel(const PixelContext& p,
+                              const PreviousPixel& previous, Sources& sources) {
+  const PixelScratch& s = p.scratch;
+  ComputeSamplingDistribution<Lanes>(p);
+  const int num_distinct = DrawViews<Lanes>(p);
 
   if (Lanes::First() == 0) {
-    MakeHypotheses(params, random, current, previous, previous_ray, ray, guide,
-                   s->plane);
+    MakeHypotheses(p, previous, s.hypothesis);
   }
   Lanes::Sync();
-  if (params.geometric) {
-    ComputeGeometricCostsOfAll<Lanes>(params, views, sources, row, col, s);
+  if (p.params.geometric) {
+    ComputeGeometricCostsOfAll<Lanes>(p, sources);
   }
-  const int best =
-      ChooseHypothesis<Lanes>(params, camera, views, sources, row, col, ray,
-                              guide.weights, num_distinct, s);
-  const Plane chosen = s->plane[best];
+  const int best = ChooseHypothesis<Lanes>(p, sources, num_distinct);
+  const DepthNormal chosen = s.hypothesis[best];
   if (best != kCurrent) {
     // In the drawn views it is measured already.
     HypothesisList list;
     list.Add(best);
-    MeasureCosts<Lanes>(views, sources, row, col, list, num_distinct,
-                        views.count, s);
-    for (int m = Lanes::First(); m < views.count; m += Lanes::Step()) {
-      s->cost[m] = s->hypothesis_cost[best * s->stride + m];
+    MeasureCosts<Lanes>(p, sources, list, num_distinct, p.views.count);
+    for (int m = Lanes::First(); m < p.views.count; m += Lanes::Step()) {
+      s.cost[m] = s.hypothesis_cost[best * s.stride + m];
     }
   }
+  UpdateSelection<Lanes>(p);
 
-  TAPA_INDEPENDENT_ITERATIONS
-  for (int m = Lanes::First(); m < views.padded_count; m += Lanes::Step()) {
-    const float forward = ViewSelection::Forward(
-        params.selection.Emission(s->cost[m]), s->forward[m]);
-    s->prob[m] = ViewSelection::Probability(forward, s->backward[m], s->prob[m],
-                                            params.prev_prob_weight);
-    s->forward[m] = forward;
+  bool is_consistent = true;
+  if (p.params.check_consistency) {
+    is_consistent = CountConsistentViews<Lanes>(
+                        p, chosen, s.geom_cost + DepthIndex(best) * s.stride,
+                        sources) >= p.params.filter_min_num_consistent;
   }
-
-  bool keep = true;
-  if (params.filter) {
-    keep = FindConsistentViews<Lanes>(
-               params, views, chosen, ray,
-               s->geom_cost + DepthIndex(best) * s->stride, s,
-               &sources) >= params.filter_min_num_consistent;
-  }
-  return {chosen, static_cast<Hypothesis>(best), keep};
+  return {chosen, static_cast<Hypothesis>(best), is_consistent};
 }
 
 }  // namespace tapa

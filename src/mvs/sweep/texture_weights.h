@@ -1,9 +1,26 @@
 #ifndef TAPA_SRC_MVS_SWEEP_TEXTURE_WEIGHTS_H_
 #define TAPA_SRC_MVS_SWEEP_TEXTURE_WEIGHTS_H_
 
+#include <cstdint>
+
 #include "src/mvs/sweep/host_device.h"
 
 namespace tapa {
+
+// Textureness (0 to 1) in 16 bits such that one half, at which the weights of
+// all hypotheses are the same number, comes back exactly.
+constexpr float kTexturenessScale = 65534.0f;
+TAPA_INLINE uint16_t EncodeTextureness(float t) {
+  return static_cast<uint16_t>(
+      static_cast<int32_t>(t * kTexturenessScale + 0.5f));
+}
+TAPA_INLINE float DecodeTextureness(uint16_t code) {
+  // A product: GPUs divide without rounding exactly.
+  constexpr float kInverse = 1.0f / kTexturenessScale;
+  return static_cast<float>(static_cast<int32_t>(code)) * kInverse;
+}
+// Where it is stored as it is.
+TAPA_INLINE float DecodeTextureness(float t) { return t; }
 
 // Factors of the two terms of a hypothesis' cost.
 struct CostWeights {

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "src/base/angle.h"
 #include "src/mvs/sweep/math.h"
 #include "src/mvs/sweep/source_cameras.h"
 
@@ -37,10 +38,9 @@ struct ViewPrior {
 
   static ViewPrior FromAngles(double min_triangulation_angle_degrees,
                               double incident_angle_sigma) {
-    const double kRadians = 3.14159265358979323846 / 180.0;
     // 1 - cos x without cancellation.
     const double half =
-        std::sin(0.5 * min_triangulation_angle_degrees * kRadians);
+        std::sin(DegToRad(0.5 * min_triangulation_angle_degrees));
     const double one_minus_cos = 2.0 * half * half;
     ViewPrior prior;
     prior.cos_min_triangulation = static_cast<float>(1.0 - one_minus_cos);

@@ -1,11 +1,7 @@
 #ifndef TAPA_SRC_MVS_SWEEP_VIEW_SAMPLING_H_
 #define TAPA_SRC_MVS_SWEEP_VIEW_SAMPLING_H_
 
-#include "src/mvs/sweep/pixel_scratch.h"
-#include "src/mvs/sweep/plane.h"
-#include "src/mvs/sweep/random.h"
-#include "src/mvs/sweep/source_cameras.h"
-#include "src/mvs/sweep/sweep_params.h"
+#include "src/mvs/sweep/pixel_context.h"
 #include "src/mvs/sweep/view_prior.h"
 #include "src/mvs/sweep/view_selection.h"
 
@@ -14,48 +10,46 @@ namespace tapa {
 // Probability of drawing each view: visible, with a good angle to measure the
 // surface, and at a similar resolution. Leaves the cumulative distribution.
 template <class Lanes>
-TAPA_INLINE void ComputeSamplingDistribution(const SweepParams& params,
-                                             const RefCamera& camera,
-                                             const SourceCameras& views,
-                                             float row, float col,
-                                             const Plane& plane,
-                                             const Vec3& ray, PixelScratch* s) {
-  const Vec3 point = plane.depth * ray;
-  const Vec3 h = HomographyVector(camera, plane, ray);
+TAPA_INLINE void ComputeSamplingDistribution(const PixelContext& p) {
+  const SweepParams& params = p.params;
+  const SourceCameras& views = p.views;
+  const PixelScratch& s = p.scratch;
+  const Vec3 point = p.current.depth * p.ray;
+  const Vec3 h = HomographyVector(p.camera, p.current, p.ray);
   TAPA_INDEPENDENT_ITERATIONS
   for (int m = Lanes::First(); m < views.padded_count; m += Lanes::Step()) {
     const float forward = ViewSelection::Forward(
-        params.selection.Emission(s->cost[m]), s->forward[m]);
+        params.selection.Emission(s.cost[m]), s.forward[m]);
     const float visible = ViewSelection::Probability(
-        forward, s->backward[m], s->prob[m], params.prev_prob_weight);
+        forward, s.backward[m], s.prob[m], params.prev_prob_weight);
     const ViewingAngles angles =
-        ComputeViewingAngles(views, m, point, plane.normal);
-    s->cdf[m] = views.valid[m] * visible *
-                params.prior.Triangulation(angles.cos_triangulation) *
-                params.prior.Incident(angles.cos_incident) *
-                ViewPrior::Resolution(ComputeWarp(views, m, row, col, h),
-                                      params.window_radius);
+        ComputeViewingAngles(views, m, point, p.current.normal);
+    s.cdf[m] = views.valid[m] * visible *
+               params.prior.Triangulation(angles.cos_triangulation) *
+               params.prior.Incident(angles.cos_incident) *
+               ViewPrior::Resolution(ComputeWarp(views, m, p.row, p.col, h),
+                                     params.window_radius);
   }
   Lanes::Sync();
-  const float sum = Lanes::Accumulate(views.count, s->cdf);
+  const float sum = Lanes::Accumulate(views.count, s.cdf);
   // Where no view has a chance, all have the same.
   const bool usable = sum > 0.0f;
   const float scale = usable ? 1.0f / sum : 1.0f / views.count;
   for (int m = Lanes::First(); m < views.count; m += Lanes::Step()) {
-    s->cdf[m] = (usable ? s->cdf[m] : m + 1.0f) * scale;
+    s.cdf[m] = (usable ? s.cdf[m] : m + 1.0f) * scale;
   }
 }
 
 // Turns num_drawn, which counts the draws below each step of the distribution,
 // into the number of draws of each view. Uses up the distribution.
 template <class Lanes>
-TAPA_INLINE void CountDraws(const SourceCameras& views, PixelScratch* s) {
+TAPA_INLINE void CountDraws(const SourceCameras& views, const PixelScratch& s) {
   for (int m = Lanes::First(); m < views.count; m += Lanes::Step()) {
-    s->cdf[m] = s->num_drawn[m];
+    s.cdf[m] = s.num_drawn[m];
   }
   Lanes::Sync();
   for (int m = Lanes::First(); m < views.count; m += Lanes::Step()) {
-    s->num_drawn[m] = s->cdf[m] - (m > 0 ? s->cdf[m - 1] : 0.0f);
+    s.num_drawn[m] = s.cdf[m] - (m > 0 ? s.cdf[m - 1] : 0.0f);
   }
   Lanes::Sync();
 }
@@ -64,23 +58,24 @@ TAPA_INLINE void CountDraws(const SourceCameras& views, PixelScratch* s) {
 // drawn k times is measured once and counts k times. Returns the number of
 // distinct views, which come first in the order.
 template <class Lanes>
-TAPA_INLINE int DrawViews(const SweepParams& params, const Random& random,
-                          const SourceCameras& views, PixelScratch* s) {
+TAPA_INLINE int DrawViews(const PixelContext& p) {
+  const SourceCameras& views = p.views;
+  const PixelScratch& s = p.scratch;
   for (int m = Lanes::First(); m < views.padded_count; m += Lanes::Step()) {
-    s->num_drawn[m] = 0.0f;
+    s.num_drawn[m] = 0.0f;
   }
-  for (int first = 0; first < params.num_samples; first += kDrawBlock) {
-    const int rest = params.num_samples - first;
+  for (int first = 0; first < p.params.num_samples; first += kDrawBlock) {
+    const int rest = p.params.num_samples - first;
     const int count = rest < kDrawBlock ? rest : kDrawBlock;
     for (int i = Lanes::First(); i < count; i += Lanes::Step()) {
-      s->uniform[i] = random.Uniform(kDrawSample + first + i);
+      s.uniform[i] = p.random.Uniform(kDrawSample + first + i);
     }
     Lanes::Sync();
     for (int i = 0; i < count; ++i) {
-      const float u = s->uniform[i];
+      const float u = s.uniform[i];
       TAPA_INDEPENDENT_ITERATIONS
       for (int m = Lanes::First(); m < views.padded_count; m += Lanes::Step()) {
-        s->num_drawn[m] += u < s->cdf[m] ? 1.0f : 0.0f;
+        s.num_drawn[m] += u < s.cdf[m] ? 1.0f : 0.0f;
       }
     }
     Lanes::Sync();
@@ -89,14 +84,14 @@ TAPA_INLINE int DrawViews(const SweepParams& params, const Random& random,
 
   int num_distinct = 0;
   for (int m = Lanes::First(); m < views.count; m += Lanes::Step()) {
-    const float drawn = s->num_drawn[m];
+    const float drawn = s.num_drawn[m];
     num_distinct += drawn > 0.0f ? 1 : 0;
     int rank = 0;
     for (int k = 0; k < views.count; ++k) {
-      const float other = s->num_drawn[k];
+      const float other = s.num_drawn[k];
       rank += (other > drawn) | ((other == drawn) & (k < m)) ? 1 : 0;
     }
-    s->order[rank] = m;
+    s.order[rank] = m;
   }
   Lanes::Sync();
   return Lanes::Sum(num_distinct);

@@ -2,7 +2,9 @@
 #define TAPA_SRC_MVS_SWEEP_VIEW_SELECTION_H_
 
 #include <cmath>
+#include <cstdint>
 
+#include "src/base/angle.h"
 #include "src/mvs/sweep/math.h"
 
 namespace tapa {
@@ -27,7 +29,7 @@ struct ViewSelection {
     ViewSelection selection;
     selection.scale = static_cast<float>(-0.5 / (ncc_sigma * ncc_sigma));
     selection.norm = static_cast<float>(
-        2.0 / (std::sqrt(2.0 * 3.14159265358979323846) * ncc_sigma *
+        2.0 / (std::sqrt(2.0 * kPi) * ncc_sigma *
                std::erf(2.0 / (ncc_sigma * std::sqrt(2.0)))));
     return selection;
   }

@@ -5,6 +5,9 @@
 #include <cmath>
 #include <vector>
 
+#include "src/base/depth.h"
+#include "src/mvs/sweep/consistency_mask.h"
+
 namespace tapa {
 namespace {
 
@@ -49,7 +52,8 @@ class EstimateCounts {
       Counts line;
       for (int col = box.left; col < box.right; ++col) {
         const float z = depth.At(row, col);
-        if (segmentation.superpixels.labels.At(row, col) == label && z > 0) {
+        if (segmentation.superpixels.labels.At(row, col) == label &&
+            IsDepth(z)) {
           const Vec3 point = z * camera.Ray(row, col);
           ++line.all;
           line.on_plane +=
@@ -111,15 +115,15 @@ class EstimateCounts {
 
 }  // namespace
 
-void RemoveUnsupported(const std::vector<uint8_t>& consistent, int num_sources,
-                       int min_num_views, Map<float>* depth) {
-  const size_t mask_bytes = (num_sources + 7) / 8;
+void RemoveInconsistent(const std::vector<uint8_t>& consistent, int num_sources,
+                        int min_num_consistent, Map<float>* depth) {
+  const size_t mask_bytes = ConsistencyMaskBytes(num_sources);
   for (size_t i = 0; i < depth->size(); ++i) {
     size_t count = 0;
     for (size_t k = 0; k < mask_bytes; ++k) {
       count += std::bitset<8>(consistent[i * mask_bytes + k]).count();
     }
-    if (count < static_cast<size_t>(std::max(min_num_views, 0))) {
+    if (count < static_cast<size_t>(std::max(min_num_consistent, 0))) {
       depth->data()[i] = 0;
     }
   }
@@ -146,7 +150,7 @@ LocalPlanes FindLocalPlanes(const Problem& problem, const RefCamera& camera,
         if (labels.At(row, col) != label) {
           continue;
         }
-        const Plane plane = PlaneAt(fitted.plane, camera.Ray(row, col));
+        const DepthNormal plane = PlaneAt(fitted.plane, camera.Ray(row, col));
         if (plane.depth >= problem.depth_min &&
             plane.depth <= problem.depth_max) {
           result.depth.At(row, col) = plane.depth;

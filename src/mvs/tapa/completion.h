@@ -16,10 +16,10 @@ namespace tapa {
 // Where the final estimate of a pixel comes from.
 enum Origin : uint8_t { kNoEstimate, kSwept, kFromPlane, kFilled };
 
-// Removes depths (sets them to 0) that fewer than min_num_views source views
-// support, by Estimate::consistent.
-void RemoveUnsupported(const std::vector<uint8_t>& consistent, int num_sources,
-                       int min_num_views, Map<float>* depth);
+// Removes depths (sets them to 0) that fewer than min_num_consistent source
+// views are consistent with, by Estimate::consistent.
+void RemoveInconsistent(const std::vector<uint8_t>& consistent, int num_sources,
+                        int min_num_consistent, Map<float>* depth);
 
 // A plane for every pixel, and how much the estimates near it speak for it.
 struct LocalPlanes {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "src/base/depth.h"
+
 namespace tapa {
 namespace {
 
@@ -38,8 +40,6 @@ struct Sample {
   float weight;
 };
 
-bool IsDepth(float depth) { return depth > 0 && std::isfinite(depth); }
-
 // The window around one pixel, clipped to the image.
 void CollectSamples(const Weights& weights, const Map<uint8_t>& image,
                     const Map<float>& depth, const Map<Vec3>& normal, int row,
@@ -65,8 +65,8 @@ void CollectSamples(const Weights& weights, const Map<uint8_t>& image,
 }
 
 // Depth 0 if the samples give no estimate.
-Plane MeanOfFullestBin(const std::vector<Sample>& samples, const Vec3& ray,
-                       double min_size) {
+DepthNormal MeanOfFullestBin(const std::vector<Sample>& samples,
+                             const Vec3& ray, double min_size) {
   const auto by_depth = [](const Sample& a, const Sample& b) {
     return a.depth < b.depth;
   };
@@ -88,7 +88,7 @@ Plane MeanOfFullestBin(const std::vector<Sample>& samples, const Vec3& ray,
       static_cast<int>(std::max_element(sizes, sizes + kNumBins) - sizes);
 
   if (sizes[fullest] < min_size) {
-    return Plane();
+    return DepthNormal();
   }
 
   double sum = 0;
@@ -103,55 +103,61 @@ Plane MeanOfFullestBin(const std::vector<Sample>& samples, const Vec3& ray,
   }
   const float norm = std::sqrt(Dot(normal, normal));
   if (!(sum > 0) || !(Dot(normal, ray) < 0)) {
-    return Plane();
+    return DepthNormal();
   }
   return {static_cast<float>(depth / sum), (1.0f / norm) * normal};
 }
 
+struct Fill {
+  int row;
+  int col;
+  DepthNormal estimate;
+};
+
+// What the missing pixels become, as the maps are.
+std::vector<Fill> FindFills(const Weights& weights, double min_size,
+                            const RefCamera& camera, const Map<uint8_t>& image,
+                            const Map<float>& depth, const Map<Vec3>& normal) {
+  std::vector<Fill> fills;
+  std::vector<Sample> samples;
+  for (int row = 0; row < image.height(); ++row) {
+    for (int col = 0; col < image.width(); ++col) {
+      if (IsDepth(depth.At(row, col))) {
+        continue;
+      }
+      CollectSamples(weights, image, depth, normal, row, col, &samples);
+      if (samples.empty()) {
+        continue;
+      }
+      const DepthNormal mean =
+          MeanOfFullestBin(samples, camera.Ray(row, col), min_size);
+      if (mean.depth > 0) {
+        fills.push_back({row, col, mean});
+      }
+    }
+  }
+  return fills;
+}
+
 }  // namespace
 
-int FillMissing(const FillOptions& options, const RefCamera& camera,
-                const Map<uint8_t>& image, Map<float>* depth,
-                Map<Vec3>* normal) {
-  struct Fill {
-    int row;
-    int col;
-    Plane plane;
-  };
+void FillMissing(const FillOptions& options, const RefCamera& camera,
+                 const Map<uint8_t>& image, Map<float>* depth,
+                 Map<Vec3>* normal) {
   const Weights weights(options);
   const double min_size =
       options.min_share * (2 * options.radius + 1) * (2 * options.radius + 1);
-  std::vector<Sample> samples;
-  std::vector<Fill> fills;
-  int num_filled = 0;
   for (int round = 0; round < options.num_rounds; ++round) {
-    fills.clear();
-    for (int row = 0; row < image.height(); ++row) {
-      for (int col = 0; col < image.width(); ++col) {
-        if (IsDepth(depth->At(row, col))) {
-          continue;
-        }
-        CollectSamples(weights, image, *depth, *normal, row, col, &samples);
-        if (samples.empty()) {
-          continue;
-        }
-        const Plane plane =
-            MeanOfFullestBin(samples, camera.Ray(row, col), min_size);
-        if (plane.depth > 0) {
-          fills.push_back({row, col, plane});
-        }
-      }
-    }
-    for (const Fill& fill : fills) {
-      depth->At(fill.row, fill.col) = fill.plane.depth;
-      normal->At(fill.row, fill.col) = fill.plane.normal;
-    }
-    num_filled += static_cast<int>(fills.size());
+    const std::vector<Fill> fills =
+        FindFills(weights, min_size, camera, image, *depth, *normal);
     if (fills.empty()) {
       break;
     }
+    for (const Fill& fill : fills) {
+      depth->At(fill.row, fill.col) = fill.estimate.depth;
+      normal->At(fill.row, fill.col) = fill.estimate.normal;
+    }
   }
-  return num_filled;
 }
 
 }  // namespace tapa

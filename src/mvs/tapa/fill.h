@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "src/base/map.h"
-#include "src/mvs/sweep/plane.h"
+#include "src/mvs/sweep/depth_normal.h"
 
 namespace tapa {
 
@@ -15,8 +15,8 @@ struct FillOptions {
   int num_rounds = 1;
   // Share of the whole window's pixels that the fullest bin has to hold.
   double min_share = 0;
-  // Spread of the weights over distance in pixels and over difference in
-  // intensity (0 to 1).
+  // Standard deviations of the weights: over distance in pixels, and over
+  // difference in intensity (0 to 1).
   float sigma_spatial = 5;
   float sigma_color = 0.2f;
 };
@@ -27,10 +27,10 @@ struct FillOptions {
 // mean of the pixels in the fullest bin (of equally full ones the nearest to
 // the camera). This approximates a weighted median and keeps discontinuities. A
 // pixel with no estimate in its window, or whose mean normal would face away
-// from the camera, stays as it is. Returns the number of pixels filled.
-int FillMissing(const FillOptions& options, const RefCamera& camera,
-                const Map<uint8_t>& image, Map<float>* depth,
-                Map<Vec3>* normal);
+// from the camera, stays as it is.
+void FillMissing(const FillOptions& options, const RefCamera& camera,
+                 const Map<uint8_t>& image, Map<float>* depth,
+                 Map<Vec3>* normal);
 
 }  // namespace tapa
 

@@ -164,7 +164,6 @@ FittedPlane FitPlane(const std::vector<Vec3>& points, float max_distance,
   result.plane.normal = {normal(0), normal(1), normal(2)};
   result.plane.distance = static_cast<float>(std::abs(best.offset));
   result.inlier_ratio = static_cast<float>(best_count) / points.size();
-  result.num_inliers = best_count;
   result.max_distance = max_distance;
   return result;
 }

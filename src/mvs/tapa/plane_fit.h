@@ -4,17 +4,16 @@
 #include <cstdint>
 #include <vector>
 
-#include "src/mvs/sweep/scene_plane.h"
+#include "src/mvs/sweep/plane.h"
 
 namespace tapa {
 
 // A plane and the trust in it.
 struct FittedPlane {
-  ScenePlane plane;
+  Plane plane;
   // Share of the points within the largest distance, 0 to 1; 0: there is no
   // plane.
   float inlier_ratio = 0;
-  int num_inliers = 0;
   // The largest distance of an inlier, in scene units.
   float max_distance = 0;
 };

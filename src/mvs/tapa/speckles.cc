@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "src/base/depth.h"
+
 namespace tapa {
 namespace {
 
@@ -44,8 +46,6 @@ class Regions {
   std::vector<int> size_;
 };
 
-bool IsDepth(float depth) { return depth > 0 && std::isfinite(depth); }
-
 bool AreContinuous(const Continuity& continuity, float a, float b) {
   const float limit =
       std::max(continuity.step, continuity.share * std::min(a, b));
@@ -54,8 +54,8 @@ bool AreContinuous(const Continuity& continuity, float a, float b) {
 
 }  // namespace
 
-int RemoveSpeckles(const Continuity& continuity, int max_size,
-                   Map<float>* depth) {
+void RemoveSpeckles(const Continuity& continuity, int max_size,
+                    Map<float>* depth) {
   const int width = depth->width();
   const int num_pixels = static_cast<int>(depth->size());
   float* depths = depth->data();
@@ -72,16 +72,11 @@ int RemoveSpeckles(const Continuity& continuity, int max_size,
       if (i >= width) connect(i, i - width);
     }
   }
-  int num_removed = 0;
   for (int i = 0; i < num_pixels; ++i) {
-    if (!IsDepth(depths[i])) {
+    if (!IsDepth(depths[i]) || regions.Size(i) <= max_size) {
       depths[i] = 0;
-    } else if (regions.Size(i) <= max_size) {
-      depths[i] = 0;
-      ++num_removed;
     }
   }
-  return num_removed;
 }
 
 }  // namespace tapa

@@ -15,11 +15,10 @@ struct Continuity {
 // Sets small isolated regions of a depth map to 0 (TAPA-MVS, sections 4.1 and
 // 5). A region is a set of pixels that hang together by steps to the left,
 // right, up or down between continuous depths; those of at most max_size pixels
-// are removed. Depths that are not positive and finite belong to no region and
-// become 0, too. Time is linear in the number of pixels. Returns the number of
-// pixels that lost a depth.
-int RemoveSpeckles(const Continuity& continuity, int max_size,
-                   Map<float>* depth);
+// are removed. What is no depth (IsDepth) belongs to no region and becomes 0,
+// too. Time is linear in the number of pixels.
+void RemoveSpeckles(const Continuity& continuity, int max_size,
+                    Map<float>* depth);
 
 }  // namespace tapa
 

@@ -4,16 +4,21 @@
 #include <cmath>
 #include <utility>
 
+#include "src/base/depth.h"
 #include "src/mvs/camera_table.h"
+#include "src/mvs/sweep/consistency_mask.h"
 #include "src/mvs/tapa/completion.h"
 #include "src/mvs/tapa/fill.h"
 #include "src/mvs/tapa/speckles.h"
 #include "src/mvs/tapa/textureness.h"
+#include "src/mvs/window_shape.h"
 
 namespace tapa {
 namespace {
 
-// Keys of the random draws of the fine and the coarse planes.
+// Keys of the random draws of the fine and the coarse planes between sweeps.
+// Fitting and drawing share them, and completion does without; changing that
+// would change maps.
 constexpr uint64_t kFineStream = 0x66696E65;
 constexpr uint64_t kCoarseStream = 0x636F6172;
 
@@ -53,7 +58,7 @@ TapaStages::TapaStages(const Options& options, const Problem& problem,
     record_.fine.superpixels = ComputeSuperpixels(
         color, NumSuperpixels(image.width(), options.tapa.fine_divisor));
   }
-  if (options.tapa.coarse_superpixels && !Stopped()) {
+  if (options.tapa.coarse_superpixels && !control_.IsStopped()) {
     record_.coarse.superpixels = ComputeSuperpixels(
         color, NumSuperpixels(image.width(), options.tapa.coarse_divisor));
   }
@@ -86,7 +91,7 @@ PlaneSet TapaStages::FitAndDraw(const Map<float>& depth, int iteration,
                                 uint64_t stream,
                                 Segmentation* segmentation) const {
   const Superpixels& superpixels = segmentation->superpixels;
-  if (superpixels.count() == 0 || Stopped()) {
+  if (superpixels.count() == 0 || control_.IsStopped()) {
     return PlaneSet();
   }
   const uint64_t seed = options_.seed ^ (stream << 32);
@@ -101,17 +106,18 @@ void TapaStages::Refine(Estimate* estimate) {
     record_.chosen = std::move(estimate->chosen);
     record_.swept_depth = depth;
   }
-  if (!options_.tapa.refinement || Stopped()) {
+  if (!options_.tapa.refinement || control_.IsStopped()) {
     return;
   }
   record_.origin = Map<uint8_t>(depth.width(), depth.height(), kNoEstimate);
 
   Map<float> trusted;
   if (options_.tapa.completion) {
-    const int num_views = options_.filter_min_num_consistent;
+    const int num_trusted = options_.filter_min_num_consistent;
     trusted = depth;
-    KeepSupported(num_views, *estimate, &trusted);
-    KeepSupported(num_views > 1 ? num_views - 1 : num_views, *estimate, &depth);
+    KeepConsistent(num_trusted, *estimate, &trusted);
+    KeepConsistent(num_trusted > 1 ? num_trusted - 1 : num_trusted, *estimate,
+                   &depth);
   } else {
     RemoveSpeckles(SpeckleContinuity(), MaxSpeckleSize(), &depth);
   }
@@ -120,22 +126,23 @@ void TapaStages::Refine(Estimate* estimate) {
     record_.filtered_depth = depth;
   }
 
-  if (options_.tapa.completion && !Stopped()) {
+  if (options_.tapa.completion && !control_.IsStopped()) {
     Complete(trusted, estimate);
   }
-  if (!Stopped()) {
+  if (!control_.IsStopped()) {
     Fill(estimate);
     NoteOrigin(kFilled, depth);
   }
   ClearOthers(estimate);
 }
 
-// What at least this many source views support, without speckles.
-void TapaStages::KeepSupported(int min_num_views, const Estimate& estimate,
-                               Map<float>* depth) const {
+// What at least this many source views are consistent with, without speckles.
+void TapaStages::KeepConsistent(int min_num_consistent,
+                                const Estimate& estimate,
+                                Map<float>* depth) const {
   const int num_sources = static_cast<int>(problem_.sources.size());
-  RemoveUnsupported(estimate.consistent, num_sources,
-                    std::min(min_num_views, num_sources), depth);
+  RemoveInconsistent(estimate.consistent, num_sources,
+                     std::min(min_num_consistent, num_sources), depth);
   RemoveSpeckles(SpeckleContinuity(), MaxSpeckleSize(), depth);
 }
 
@@ -171,10 +178,9 @@ void TapaStages::Fill(Estimate* estimate) const {
   if (options_.tapa.completion) {
     fill.min_share = options_.tapa.completion_fill_share;
   }
-  fill.sigma_spatial =
-      static_cast<float>(options_.sigma_spatial > 0 ? options_.sigma_spatial
-                                                    : options_.window_radius);
-  fill.sigma_color = static_cast<float>(options_.sigma_color);
+  const WindowShape window(options_);
+  fill.sigma_spatial = static_cast<float>(window.sigma_spatial);
+  fill.sigma_color = static_cast<float>(window.sigma_color);
   FillMissing(fill, camera_, *problem_.reference.image, &estimate->depth,
               &estimate->normal);
 }
@@ -182,15 +188,16 @@ void TapaStages::Fill(Estimate* estimate) const {
 // Of the pixels that have got an estimate since the last call.
 void TapaStages::NoteOrigin(Origin origin, const Map<float>& depth) {
   for (size_t i = 0; i < depth.size(); ++i) {
-    if (depth.data()[i] > 0 && record_.origin.data()[i] == kNoEstimate) {
+    if (IsDepth(depth.data()[i]) && record_.origin.data()[i] == kNoEstimate) {
       record_.origin.data()[i] = origin;
     }
   }
 }
 
-// Source views support swept estimates only.
+// Source views are consistent with swept estimates only.
 void TapaStages::ClearOthers(Estimate* estimate) const {
-  const size_t mask_bytes = (problem_.sources.size() + 7) / 8;
+  const int mask_bytes =
+      ConsistencyMaskBytes(static_cast<int>(problem_.sources.size()));
   for (size_t i = 0; i < estimate->depth.size(); ++i) {
     if (record_.origin.data()[i] == kNoEstimate) {
       estimate->normal.data()[i] = Vec3();

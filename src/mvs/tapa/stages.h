@@ -1,7 +1,7 @@
 #ifndef TAPA_SRC_MVS_TAPA_STAGES_H_
 #define TAPA_SRC_MVS_TAPA_STAGES_H_
 
-#include <vector>
+#include <utility>
 
 #include "src/mvs/backend.h"
 #include "src/mvs/control.h"
@@ -24,8 +24,8 @@ struct TapaRecord {
   Map<uint8_t> chosen;
   // Depth after the last sweep.
   Map<float> swept_depth;
-  // The same without what has no support or is a speckle; empty where
-  // refinement is off.
+  // The same without what no source view is consistent with and without
+  // speckles; empty where refinement is off.
   Map<float> filtered_depth;
   // How much the estimates nearby speak for the best plane (completion.h);
   // empty where completion is off.
@@ -57,16 +57,14 @@ class TapaStages {
  private:
   PlaneSet FitAndDraw(const Map<float>& depth, int iteration, uint64_t stream,
                       Segmentation* segmentation) const;
-  void KeepSupported(int min_num_views, const Estimate& estimate,
-                     Map<float>* depth) const;
+  void KeepConsistent(int min_num_consistent, const Estimate& estimate,
+                      Map<float>* depth) const;
   void Complete(const Map<float>& trusted, Estimate* estimate);
   void Fill(Estimate* estimate) const;
   void NoteOrigin(Origin origin, const Map<float>& depth);
   void ClearOthers(Estimate* estimate) const;
   int MaxSpeckleSize() const;
   Continuity SpeckleContinuity() const;
-
-  bool Stopped() const { return control_.stopped && control_.stopped(); }
 
   const Options options_;
   const Problem& problem_;

@@ -1,8 +1,8 @@
 #include "src/mvs/tapa/superpixel_planes.h"
 
 #include <algorithm>
-#include <cmath>
 
+#include "src/base/depth.h"
 #include "src/mvs/sweep/random.h"
 
 namespace tapa {
@@ -26,7 +26,7 @@ std::vector<SuperpixelPoints> GatherPoints(const RefCamera& camera,
       SuperpixelPoints& superpixel = result[superpixels.labels.At(row, col)];
       ++superpixel.num_pixels;
       const float z = depth.At(row, col);
-      if (z > 0 && std::isfinite(z)) {
+      if (IsDepth(z)) {
         superpixel.points.push_back(z * camera.Ray(row, col));
       }
     }

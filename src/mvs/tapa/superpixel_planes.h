@@ -19,9 +19,9 @@ struct Segmentation {
 
 // Fits a plane to the 3D points of every superpixel (TAPA-MVS, section 4.1).
 // `depth` are depths of the reference view, 0 where there is none. The largest
-// distance of a point from its plane is options.plane_distance or, where that
-// is not positive, options.relative_plane_distance times the median depth of
-// the superpixel. A superpixel with points at less than one in a hundred of its
+// distance of a point from its plane is options.plane_distance or, if that is
+// <= 0, options.relative_plane_distance times the median depth of the
+// superpixel. A superpixel with points at less than one in a hundred of its
 // pixels, or that FitPlane finds none for, has a plane of inlier ratio 0.
 std::vector<FittedPlane> FitPlanes(const TapaOptions& options,
                                    const RefCamera& camera,

@@ -40,6 +40,38 @@ void Check(const TexturenessOptions& options) {
   }
 }
 
+// Of a patch of `count` pixels.
+float TexturenessOf(const Sums& patch, int64_t count,
+                    const TexturenessOptions& options) {
+  // Exact in integers: count^2 times the variance of 0 to 255.
+  const int64_t scaled = count * patch.second - patch.first * patch.first;
+  const double variance =
+      scaled / (static_cast<double>(count) * count * 255.0 * 255.0);
+  return static_cast<float>(
+      (variance + options.epsilon) /
+      (variance + options.epsilon / options.min_textureness));
+}
+
+// Of the patches around the pixels of a row: they slide to the right over the
+// sums of the columns, over num_rows rows each.
+void ComputeRow(const std::vector<Sums>& columns, int num_rows,
+                const TexturenessOptions& options, float* textureness) {
+  const int width = static_cast<int>(columns.size());
+  const int radius = options.radius;
+  Sums patch;
+  for (int col = 0; col < std::min(radius, width); ++col) {
+    patch += columns[col];
+  }
+  for (int col = 0; col < width; ++col) {
+    if (col + radius < width) patch += columns[col + radius];
+    if (col - radius > 0) patch -= columns[col - radius - 1];
+    const int num_cols =
+        std::min(col + radius, width - 1) - std::max(col - radius, 0) + 1;
+    textureness[col] = TexturenessOf(
+        patch, static_cast<int64_t>(num_rows) * num_cols, options);
+  }
+}
+
 }  // namespace
 
 Map<float> ComputeTextureness(const Map<uint8_t>& image,
@@ -50,8 +82,7 @@ Map<float> ComputeTextureness(const Map<uint8_t>& image,
   const int radius = options.radius;
   Map<float> textureness(width, height);
 
-  // The patch slides down: every column keeps the sums of its rows in reach.
-  // Within a row it slides to the right over these columns.
+  // The patches slide down: every column keeps the sums of its rows in reach.
   std::vector<Sums> columns(width);
   const auto add_row = [&](int row) {
     for (int col = 0; col < width; ++col) {
@@ -64,32 +95,12 @@ Map<float> ComputeTextureness(const Map<uint8_t>& image,
     }
   };
   for (int row = 0; row < std::min(radius, height); ++row) add_row(row);
-
   for (int row = 0; row < height; ++row) {
     if (row + radius < height) add_row(row + radius);
     if (row - radius > 0) remove_row(row - radius - 1);
     const int num_rows =
         std::min(row + radius, height - 1) - std::max(row - radius, 0) + 1;
-
-    Sums patch;
-    for (int col = 0; col < std::min(radius, width); ++col) {
-      patch += columns[col];
-    }
-    for (int col = 0; col < width; ++col) {
-      if (col + radius < width) patch += columns[col + radius];
-      if (col - radius > 0) patch -= columns[col - radius - 1];
-      const int num_cols =
-          std::min(col + radius, width - 1) - std::max(col - radius, 0) + 1;
-
-      const int64_t count = static_cast<int64_t>(num_rows) * num_cols;
-      // Exact in integers: count^2 times the variance of 0 to 255.
-      const int64_t scaled = count * patch.second - patch.first * patch.first;
-      const double variance =
-          scaled / (static_cast<double>(count) * count * 255.0 * 255.0);
-      textureness.At(row, col) = static_cast<float>(
-          (variance + options.epsilon) /
-          (variance + options.epsilon / options.min_textureness));
-    }
+    ComputeRow(columns, num_rows, options, textureness.Row(row));
   }
   return textureness;
 }

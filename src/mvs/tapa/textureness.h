@@ -9,7 +9,8 @@ namespace tapa {
 
 // The values of Romanoni and Matteucci, "TAPA-MVS: Textureless-Aware PAtchMatch
 // Multi-View Stereo", ICCV 2019, section "Textureness-Aware Hypotheses
-// Integration".
+// Integration": scores by textureness use them. The engine has values of its
+// own, in TapaOptions.
 struct TexturenessOptions {
   // Half size of the patch, in pixels: 2 is a patch of 5x5 pixels.
   int radius = 2;

@@ -1,6 +1,6 @@
 // How the CUDA backend packs what it keeps in a device's memory.
 
-#include "src/mvs/cuda/packed_plane.h"
+#include "src/mvs/cuda/packed_depth_normal.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 namespace tapa {
 namespace {
 
-TEST(PackedPlane, KeepsNormals) {
+TEST(PackedDepthNormal, KeepsNormals) {
   std::mt19937 random(1);
   std::normal_distribution<float> normal;
   double worst = 0;
@@ -27,7 +27,7 @@ TEST(PackedPlane, KeepsNormals) {
       continue;
     }
     n = (1 / length) * n;
-    const Plane back = Unpack(Pack({2.5f, n}));
+    const DepthNormal back = Unpack(Pack({2.5f, n}));
     EXPECT_EQ(back.depth, 2.5f);
     EXPECT_NEAR(Dot(back.normal, back.normal), 1, 1e-6);
     const Vec3 difference = back.normal - n;

@@ -1,10 +1,10 @@
-#ifndef TAPA_SRC_MVS_CUDA_PACKED_PLANE_H_
-#define TAPA_SRC_MVS_CUDA_PACKED_PLANE_H_
+#ifndef TAPA_SRC_MVS_CUDA_PACKED_DEPTH_NORMAL_H_
+#define TAPA_SRC_MVS_CUDA_PACKED_DEPTH_NORMAL_H_
 
 #include <cmath>
 #include <cstdint>
 
-#include "src/mvs/sweep/plane.h"
+#include "src/mvs/sweep/depth_normal.h"
 
 namespace tapa {
 
@@ -14,7 +14,7 @@ namespace tapa {
 // Vectors", JCGT 2014), with 16 bits for either coordinate. Normals come back
 // to within 7e-5 radians, a change of depth by 3e-4 pixels at the border of an
 // 11x11 window.
-struct alignas(8) PackedPlane {
+struct alignas(8) PackedDepthNormal {
   float depth;
   // No valid normal has this code: it stands for 0, of estimates that were
   // filtered.
@@ -55,14 +55,14 @@ TAPA_INLINE Vec3 UnpackNormal(uint32_t code) {
   return (1.0f / sqrtf(Dot(n, n))) * n;
 }
 
-TAPA_INLINE PackedPlane Pack(const Plane& plane) {
-  return {plane.depth, PackNormal(plane.normal)};
+TAPA_INLINE PackedDepthNormal Pack(const DepthNormal& estimate) {
+  return {estimate.depth, PackNormal(estimate.normal)};
 }
 
-TAPA_INLINE Plane Unpack(const PackedPlane& packed) {
+TAPA_INLINE DepthNormal Unpack(const PackedDepthNormal& packed) {
   return {packed.depth, UnpackNormal(packed.normal)};
 }
 
 }  // namespace tapa
 
-#endif  // TAPA_SRC_MVS_CUDA_PACKED_PLANE_H_
+#endif  // TAPA_SRC_MVS_CUDA_PACKED_DEPTH_NORMAL_H_

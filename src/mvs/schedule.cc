@@ -1,0 +1,53 @@
+#include "src/mvs/schedule.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "src/base/angle.h"
+
+namespace tapa {
+
+Schedule::Schedule(const Options& options, int num_sources)
+    : num_iterations_(options.num_iterations),
+      checks_consistency_(ChecksConsistency(options)) {
+  common_.seed = options.seed;
+  common_.num_samples = options.num_samples;
+  common_.window_radius = static_cast<float>(options.window_radius);
+  common_.selection = ViewSelection::FromSigma(options.ncc_sigma);
+  common_.prior = ViewPrior::FromAngles(options.min_triangulation_angle,
+                                        options.incident_angle_sigma);
+  common_.geometric = options.geom_consistency;
+  common_.geom_weight =
+      static_cast<float>(options.geom_consistency_regularizer);
+  common_.geom_max_cost = static_cast<float>(options.geom_consistency_max_cost);
+  common_.filter_min_prob = common_.selection.Emission(
+      static_cast<float>(1.0 - options.filter_min_ncc));
+  common_.filter_cos_min_triangulation = static_cast<float>(
+      std::cos(DegToRad(options.filter_min_triangulation_angle)));
+  common_.filter_geom_max_cost =
+      static_cast<float>(options.filter_geom_consistency_max_cost);
+  common_.filter_min_num_consistent =
+      std::min(options.filter_min_num_consistent, num_sources);
+  // TAPA decides itself what becomes of estimates, by their consistent views;
+  // patches without texture have no photometric evidence, so it does not count.
+  if (options.tapa.enabled) {
+    common_.filter_min_num_consistent = 0;
+    if (options.geom_consistency) {
+      common_.filter_min_prob = 0;
+    }
+  }
+}
+
+SweepParams Schedule::At(int index) const {
+  const int iteration = index / kSweepsPerIteration;
+  const int sweep = index % kSweepsPerIteration;
+  SweepParams params = common_;
+  params.index = index;
+  params.perturbation = static_cast<float>(
+      std::pow(2.0, -(iteration + sweep / double{kSweepsPerIteration})));
+  params.prev_prob_weight = static_cast<float>(index) / num_sweeps();
+  params.check_consistency = checks_consistency_ && index + 1 == num_sweeps();
+  return params;
+}
+
+}  // namespace tapa

@@ -1,0 +1,16 @@
+#include "src/mvs/window_shape.h"
+
+namespace tapa {
+
+WindowShape::WindowShape(const Options& options)
+    : radius(options.window_radius),
+      step(options.window_step),
+      row_samples(2 * radius / step + 1),
+      sigma_spatial(options.sigma_spatial > 0 ? options.sigma_spatial : radius),
+      sigma_color(options.sigma_color) {
+  const double sigma_intensity = 255 * sigma_color;
+  spatial_scale = static_cast<float>(-0.5 / (sigma_spatial * sigma_spatial));
+  color_scale = static_cast<float>(-0.5 / (sigma_intensity * sigma_intensity));
+}
+
+}  // namespace tapa

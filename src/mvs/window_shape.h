@@ -1,0 +1,30 @@
+#ifndef TAPA_SRC_MVS_WINDOW_SHAPE_H_
+#define TAPA_SRC_MVS_WINDOW_SHAPE_H_
+
+#include "src/mvs/options.h"
+
+namespace tapa {
+
+// The correlation window and its bilateral weights.
+struct WindowShape {
+  WindowShape() = default;
+  explicit WindowShape(const Options& options);
+
+  // In pixels, as in the options.
+  int radius = 5;
+  int step = 1;
+  // Samples in a row and in a column.
+  int row_samples = 11;
+  // Standard deviations of the weights: over distance in pixels, and over
+  // difference in intensity (0 to 1).
+  double sigma_spatial = 5;
+  double sigma_color = 0.2;
+  // For kernels, factors in the exponent of the weight: of the squared distance
+  // in pixels and of the squared difference in intensity (0 to 255).
+  float spatial_scale = 0;
+  float color_scale = 0;
+};
+
+}  // namespace tapa
+
+#endif  // TAPA_SRC_MVS_WINDOW_SHAPE_H_
