@@ -117,6 +117,7 @@ TEST(DescribeDifferences, APassBeforeTheGeometricOneIsNotAFinalOne) {
   PatchMatchOptions final_pass;
   final_pass.geom_consistency = false;
   PatchMatchOptions options;
+  options.first_window_step = 1;
   EXPECT_EQ(DifferenceOf(final_pass, PassOptions(options, Pass::kPhotometric)),
             "filter was 1, is 0");
   final_pass.filter = false;
