@@ -1,11 +1,11 @@
 #include "src/eval/depth_map_io.h"
 
-#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <opencv2/core.hpp>
 #include <stdexcept>
 
+#include "src/base/depth.h"
 #include "src/base/map_files.h"
 #include "src/pictures/image_io.h"
 
@@ -36,7 +36,7 @@ Map<float> ReadGroundTruth(const std::string& path, double depth_scale) {
   Map<float> depth = ReadDepthMap(path);
   for (size_t i = 0; i < depth.size(); ++i) {
     float& value = depth.data()[i];
-    if (!std::isfinite(value) || value < 0) value = 0;
+    if (!IsDepth(value)) value = 0;
   }
   return depth;
 }

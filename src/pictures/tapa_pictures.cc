@@ -8,6 +8,7 @@
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
+#include "src/base/depth.h"
 #include "src/mvs/sweep/hypotheses.h"
 #include "src/pictures/color_map.h"
 #include "src/pictures/drawing.h"
@@ -321,9 +322,8 @@ std::vector<NamedPicture> DrawTapaPictures(const TapaView& view) {
   }
   // Where nothing is left, its range would say nothing.
   DepthRange range = RobustDepthRange(*view.depth);
-  const bool is_empty =
-      std::none_of(view.depth->data(), view.depth->data() + view.depth->size(),
-                   [](float depth) { return depth > 0; });
+  const bool is_empty = std::none_of(
+      view.depth->data(), view.depth->data() + view.depth->size(), IsDepth);
   if (is_empty && has(record.swept_depth)) {
     range = RobustDepthRange(record.swept_depth);
   }
