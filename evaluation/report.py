@@ -17,7 +17,8 @@ GLOSSARY = """\
 - **Textureness** is 0.5 where a photograph is flat and tends to 1 where it has much
   texture. **Low texture**: below 0.75.
 - **Plain** is COLMAP's own algorithm (method `plain`), **COLMAP** the same with COLMAP's
-  numbers of iterations and samples (`colmap`), **TAPA** is `--PatchMatchStereo.tapa 1`
+  numbers of iterations and samples (`colmap`); rays go through the centres of pixels in
+  both. **TAPA** is `--PatchMatchStereo.tapa 1`
   (`tapa`), **paper's TAPA** is TAPA without completion and with COLMAP's numbers, as the
   paper describes it (`paper`).
 - "-" is what nobody has run or what cannot be measured. It is not zero.
@@ -202,7 +203,8 @@ def link_to(path, folder):
 
 
 BLOCKS = {name: getattr(SetReport, name) for name in (
-    "depth", "low_texture", "cost", "trade", "clouds", "ablation", "errors", "textureness", "pictures")}
+    "depth", "low_texture", "cost", "trade", "clouds", "ablation", "errors", "textureness",
+    "pictures")}
 
 
 def _machine_text(machine):

@@ -39,8 +39,7 @@ skip() {
   fail "MAX_IMAGE_SIZE is $size, but must be a positive number"
 bin=${TAPA_BIN_DIR:-$root/build/bin}
 colmap=$bin/colmap
-# Fewer iterations than usual, to be done soon.
-stereo=(--PatchMatchStereo.max_image_size "$size" --PatchMatchStereo.num_iterations 3)
+stereo=(--PatchMatchStereo.max_image_size "$size")
 [[ -x $colmap ]] || fail "$bin has no colmap; run scripts/build.sh first"
 photos=${1:-$root/examples/room/images}
 [[ -d $photos ]] || fail "there is no folder $photos"

@@ -94,7 +94,8 @@ def _run_of(arguments, scene, method, seed, size):
         folder=_path(arguments, "runs", _size_name(size), scene.set_name,
                      stereo_run.folder_name(method, seed)),
         seed=seed, fusions={"fused": scene.track.fusion, "fused_default": []},
-        options=[*stereo_run.size_options(size), *([] if method in ("plain", "colmap") else PLANE_OPTIONS),
+        options=[*stereo_run.size_options(size),
+                 *([] if method in ("plain", "colmap") else PLANE_OPTIONS),
                  *arguments.options],
         sources=arguments.sources)
 

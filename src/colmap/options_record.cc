@@ -50,6 +50,8 @@ OptionValues OptionsOfMaps(const PatchMatchOptions& options) {
       values[entry.name] = ToText(*value);
     }
   });
+  // Until they did, maps were made with rays that are half a pixel off.
+  values["rays"] = "through the centres of pixels";
   return values;
 }
 

@@ -162,6 +162,12 @@ std::vector<PassPlan> Passes(const PatchMatchOptions& options,
     to.pass = pass;
     to.options = PassOptions(options, pass);
     to.record = RecordOf(to.options, plan.views);
+    if (!passes.empty()) {
+      // It starts from the maps of the pass before, which may be gone later.
+      for (const char* name : {"num_iterations", "window_step"}) {
+        to.record[std::string("first_") + name] = passes.back().record.at(name);
+      }
+    }
     to.has_maps = HasMaps(plan, pass);
     // The pass before the final one does not filter.
     const bool is_final = pass == FinalPass(options);
@@ -171,6 +177,19 @@ std::vector<PassPlan> Passes(const PatchMatchOptions& options,
     passes.push_back(to);
   }
   return passes;
+}
+
+// How a pass comes to values that nobody gave, if differences name such.
+std::string PassLimits(const std::string& differences, bool is_final) {
+  if (!is_final && differences.find("window_step") != std::string::npos) {
+    return "; before a geometric pass window_step is at least "
+           "first_window_step";
+  }
+  if (is_final && differences.find("num_iterations") != std::string::npos) {
+    return "; in the geometric pass num_iterations is at most "
+           "num_geom_iterations";
+  }
+  return "";
 }
 
 // Compares the options that made the maps of a pass with those of this run.
@@ -201,6 +220,7 @@ void CheckRecord(const StereoPlan& plan, const PassPlan& pass) {
   throw Failure(
       maps + "other options (PatchMatchStereo: " + differences +
       (was_final ? "; before a geometric pass nothing is filtered" : "") +
+      PassLimits(differences, is_final) +
       "); take the same options, name another workspace, or remove all " +
       files + (is_final ? "" : " and *.geometric.bin") +
       " there to have them computed again");

@@ -53,10 +53,11 @@ TEST(OptionsOfMaps, HasWhatChangesMaps) {
                            "filter_min_num_consistent",
                            "filter_geom_consistency_max_cost",
                            "seed",
-                           "tapa"}) {
+                           "tapa",
+                           "rays"}) {
     EXPECT_EQ(values.count(name), 1) << name;
   }
-  EXPECT_EQ(values.size(), 21) << "Is an option missing in the list above?";
+  EXPECT_EQ(values.size(), 22) << "Is an option missing in the list above?";
 }
 
 TEST(OptionsOfMaps, LeavesOutWhatNothingReads) {

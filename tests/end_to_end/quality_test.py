@@ -75,6 +75,8 @@ CASES = {
     "fountain_full_size": {
         "arguments": ["--image_size", "768"],
         "plain": [
+            # Rays through the corners of pixels: 0.482; through their centres: 0.574.
+            ("all", "f1", "m", 0.01, ">=", 0.53),
             ("all", "accuracy", "%", 1.0, ">=", 0.93),
             ("all", "f1", "%", 1.0, ">=", 0.88),
             ("all", "f1", "m", 0.05, ">=", 0.84),

@@ -356,6 +356,38 @@ class Record(tiny.TestCase):
         self.assert_success(result)
         self.assertNotIn("WARNING", result.stdout)
 
+    def test_passes_have_numbers_of_their_own(self):
+        names = ("num_iterations", "num_samples", "window_step")
+        defaults = {name: None for name in tiny.FAST}
+        for options, photometric, geometric in (
+                ({}, ["3", "8", "2"], ["2", "8", "1"]),
+                ({"colmap_defaults": 1}, ["5", "15", "1"], ["5", "15", "1"])):
+            folder = self.path("options%d" % len(options))
+            tiny.make_workspace(folder, num_views=2)
+            self.assert_success(tiny.run_stereo(
+                folder, **{**defaults, **options, "max_image_size": 24}))
+            for which, expected in (("photometric", photometric),
+                                    ("geometric", geometric)):
+                record = read_record(folder, which)
+                self.assertEqual([record[name] for name in names], expected)
+
+    def test_geometric_maps_know_the_pass_before(self):
+        self.assert_success(tiny.run_stereo(self.folder))
+        for name in self.names:
+            for kind in ("depth_maps", "normal_maps"):
+                os.remove(tiny.map_path(self.folder, name, kind, "photometric"))
+        self.expect_refusal("first_window_step was 2, is 1", first_window_step=1)
+
+    def test_maps_with_other_rays(self):
+        self.assert_success(tiny.run_stereo(self.folder))
+        for which in ("photometric", "geometric"):
+            path = self.path("stereo", "options.%s.txt" % which)
+            with open(path) as file:
+                lines = file.readlines()
+            with open(path, "w") as file:
+                file.writelines(line for line in lines if not line.startswith("rays"))
+        self.expect_refusal("rays was not set, is through the centres of pixels")
+
     def test_maps_of_unknown_origin(self):
         self.assert_success(tiny.run_stereo(self.folder))
         expected = tiny.snapshot(self.folder)

@@ -252,10 +252,11 @@ def snapshot(workspace, stereo="stereo"):
 
 
 def stereo_command(workspace, arguments=(), **options):
-    """options: PatchMatchStereo options beside those of FAST."""
+    """options: PatchMatchStereo options beside those of FAST; None: the default."""
     command = [COLMAP, "patch_match_stereo", "--workspace_path", workspace]
     for name, value in {**FAST, **options}.items():
-        command += ["--PatchMatchStereo." + name, str(value)]
+        if value is not None:
+            command += ["--PatchMatchStereo." + name, str(value)]
     return command + list(arguments)
 
 
