@@ -93,7 +93,8 @@ Result Measure(const WideScene& scene, const Mode& mode, int device) {
   switches.profile = &result.profile;
   const Problem& problem = scene.problem();
   const auto backend = MakeCudaBackendForTesting(options, problem, switches);
-  const Schedule schedule(options, static_cast<int>(problem.sources.size()));
+  const Schedule schedule(options, static_cast<int>(problem.sources.size()),
+                          /* has_start */ true);
   SetRandomEstimate(problem, backend.get());
   if (mode.tapa) {
     SetGuide(scene, backend.get());

@@ -6,6 +6,7 @@
 #include "src/base/failure.h"
 #include "src/colmap/option_list.h"
 #include "src/colmap/workers.h"
+#include "src/mvs/levels.h"
 
 namespace tapa {
 
@@ -37,6 +38,8 @@ Options EngineOptions(const PatchMatchOptions& options) {
   VisitSharedOptions(
       [](const OptionEntry&, auto* to, const auto* from) { *to = *from; },
       &result, &options);
+  result.first_perturbation = options.first_perturbation;
+  result.search = options.search;
   result.num_threads = options.num_threads;
   result.tapa = options.tapa;
   return result;
@@ -46,28 +49,61 @@ Pass FinalPass(const PatchMatchOptions& options) {
   return options.geom_consistency ? Pass::kGeometric : Pass::kPhotometric;
 }
 
-PatchMatchOptions PassOptions(PatchMatchOptions options, Pass pass) {
+namespace {
+
+void TakeColmapDefaults(PatchMatchOptions* options) {
+  options->num_levels = 1;
+  options->num_samples = 15;
+  options->num_iterations = options->num_geom_iterations = 5;
+  options->window_step = 1;
+  options->first_perturbation = options->geom_perturbation = 1;
+  options->search.try_all = true;
+  options->search.hysteresis = 0;
+}
+
+}  // namespace
+
+int NumLevels(const PatchMatchOptions& options, int longest_side) {
   if (options.colmap_defaults) {
-    options.num_samples = 15;
-    options.num_iterations = options.num_geom_iterations = 5;
-    options.window_step = options.first_window_step = 1;
+    return 1;
+  }
+  return options.num_levels > 0 ? options.num_levels
+                                : AutomaticNumLevels(longest_side);
+}
+
+PatchMatchOptions PassOptions(PatchMatchOptions options, Pass pass, int level,
+                              int num_levels) {
+  if (options.colmap_defaults) {
+    TakeColmapDefaults(&options);
     options.colmap_defaults = false;
   }
+  options.num_levels = num_levels;
+  const bool is_coarsest = level + 1 == num_levels;
+  const bool is_final = level == 0 && pass == FinalPass(options);
   if (pass == Pass::kGeometric) {
     options.num_iterations =
         std::min(options.num_iterations, options.num_geom_iterations);
+  } else if (!is_coarsest) {
+    options.num_iterations =
+        std::min(options.num_iterations, options.num_fine_iterations);
   }
-  if (pass != FinalPass(options)) {
-    options.window_step =
-        std::max(options.window_step, options.first_window_step);
-    options.geom_consistency = false;
+  if (!is_coarsest) {
+    options.first_perturbation =
+        std::min(options.first_perturbation, options.fine_perturbation);
+  } else if (pass == Pass::kGeometric) {
+    options.first_perturbation =
+        std::min(options.first_perturbation, options.geom_perturbation);
+  }
+  if (!is_final) {
     options.filter = false;
     options.tapa.refinement = false;
   }
+  options.geom_consistency = pass == Pass::kGeometric;
   return options;
 }
 
-uint64_t ViewSeed(uint64_t seed, const std::string& image_name, Pass pass) {
+uint64_t ViewSeed(uint64_t seed, const std::string& image_name, Pass pass,
+                  int level) {
   // FNV-1a.
   uint64_t hash = 0xcbf29ce484222325u;
   const auto add = [&hash](uint8_t byte) {
@@ -76,7 +112,7 @@ uint64_t ViewSeed(uint64_t seed, const std::string& image_name, Pass pass) {
   for (int shift = 0; shift < 64; shift += 8) {
     add(static_cast<uint8_t>(seed >> shift));
   }
-  add(static_cast<uint8_t>(pass));
+  add(static_cast<uint8_t>(2 * level + static_cast<int>(pass)));
   for (const char c : image_name) {
     add(static_cast<uint8_t>(c));
   }

@@ -19,15 +19,22 @@ void CheckOptions(const colmap::mvs::PatchMatchOptions& options);
 // The options, but the seed, as the engine takes them.
 Options EngineOptions(const colmap::mvs::PatchMatchOptions& options);
 
-// What is in force in a pass: it has its own number of iterations, and in the
-// photometric pass before a geometric one all pixels keep their estimates, so
-// it neither filters nor, which takes the filter's place, refines.
-colmap::mvs::PatchMatchOptions PassOptions(
-    colmap::mvs::PatchMatchOptions options, Pass pass);
+// How many levels (levels.h) a run has whose largest image has this longest
+// side, in pixels.
+int NumLevels(const colmap::mvs::PatchMatchOptions& options, int longest_side);
 
-// Key of the random draws for a view in a pass. It does not depend on other
+// What is in force in a pass at a level: it has its own number of iterations
+// and size of random changes. Before the final pass all pixels keep their
+// estimates, so that it neither filters nor, which takes the filter's place,
+// refines.
+colmap::mvs::PatchMatchOptions PassOptions(
+    colmap::mvs::PatchMatchOptions options, Pass pass, int level = 0,
+    int num_levels = 1);
+
+// Key of the random draws for a view in a pass at a level. It does not depend on other
 // views, nor on their order, so that a resumed run gives the same maps.
-uint64_t ViewSeed(uint64_t seed, const std::string& image_name, Pass pass);
+uint64_t ViewSeed(uint64_t seed, const std::string& image_name, Pass pass,
+                  int level = 0);
 
 }  // namespace tapa
 

@@ -16,8 +16,13 @@ struct HostOptions {
   bool use_gpu = true;
   int num_threads = -1;
   int seed = 0;
-  int num_geom_iterations = 2;
-  int first_window_step = 2;
+  int num_levels = -1;
+  int num_fine_iterations = 2;
+  int num_geom_iterations = 1;
+  double first_perturbation = 1;
+  double fine_perturbation = 0.03125;
+  double geom_perturbation = 0.125;
+  SearchOptions search;
   bool colmap_defaults = false;
   TapaOptions tapa;
   std::string tapa_debug;
@@ -45,19 +50,37 @@ void VisitHostOptions(Options* options, const Visitor& visit) {
          "Key of all random draws: the same seed gives the same maps, on "
          "processors with the same SIMD instructions",
          OptionRange::AtLeast(0));
-  // What counts is the pass's num_iterations and window_step.
+  option("num_levels", &o.num_levels, true,
+         "Image sizes, each half of the one before, that stereo goes through "
+         "from coarse to fine; 1: only the full one",
+         OptionRange::From(1, 16).OrMinusOne("by the size of the images"));
+  // What counts is the pass's num_iterations and first_perturbation.
+  option("num_fine_iterations", &o.num_fine_iterations, false,
+         "Iterations of the photometric pass at all levels but the coarsest; "
+         "at most num_iterations",
+         OptionRange::From(1, 1000));
   option("num_geom_iterations", &o.num_geom_iterations, false,
          "Iterations of the geometric pass, which starts from the result of "
          "the photometric one; at most num_iterations",
          OptionRange::From(1, 1000));
-  option("first_window_step", &o.first_window_step, false,
-         "window_step of the photometric pass before a geometric one; at "
-         "least window_step",
-         OptionRange::From(1, 2));
+  option("first_perturbation", &o.first_perturbation, true,
+         "Relative size of the first random changes where a view starts at "
+         "random; they shrink by half in every iteration",
+         OptionRange::From(0, 1).WithoutMin());
+  option("fine_perturbation", &o.fine_perturbation, false,
+         "The same at all levels but the coarsest; at most "
+         "first_perturbation",
+         OptionRange::From(0, 1).WithoutMin());
+  option("geom_perturbation", &o.geom_perturbation, false,
+         "The same in the geometric pass of the coarsest level; at most "
+         "first_perturbation",
+         OptionRange::From(0, 1).WithoutMin());
+  VisitSearchOptions(&o.search, visit);
   option("colmap_defaults", &o.colmap_defaults, false,
-         "Take COLMAP's own numbers, whatever is given here: num_iterations 5 "
-         "in both passes, num_samples 15 and window_step 1 in both; they cost "
-         "more than twice as much (docs/results.md)");
+         "Take COLMAP's own numbers, whatever is given here: one level, "
+         "num_iterations 5 in both passes, num_samples 15, window_step 1, all "
+         "random changes and of full size; they cost several times as much "
+         "(docs/results.md)");
   VisitTapaOptions(&o.tapa, visit);
   option("tapa_debug", &o.tapa_debug, false,
          "Folder for pictures of every step of TAPA for every view that the "

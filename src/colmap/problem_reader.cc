@@ -3,9 +3,10 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <set>
+#include <map>
 
 #include "src/base/map_files.h"
+#include "util/misc.h"
 
 namespace tapa {
 namespace {
@@ -22,42 +23,82 @@ double CacheBytes(const StereoPlan& plan) {
 ProblemReader::ProblemReader(const StereoPlan& plan)
     : plan_(plan),
       photos_(CacheBytes(plan) / 5,
-              [this](int view) { return ReadPhoto(plan_.views[view]); }),
-      depth_maps_(CacheBytes(plan) * 4 / 5,
-                  [this](int view) { return ReadDepth(view); }) {}
+              [this](int key) { return ReadPhoto(ViewOf(key)); }),
+      depth_maps_(CacheBytes(plan) * 4 / 5, [this](int key) {
+        return ReadDepth(key, Pass::kPhotometric);
+      }) {}
 
-Map<float> ProblemReader::ReadDepth(int view) const {
-  const std::string path =
-      plan_.MapPath(MapKind::kDepth, view, Pass::kPhotometric);
-  CheckMapFile(path, MapKind::kDepth, plan_.views[view].width,
-               plan_.views[view].height);
-  return ReadDepthMap(path);
+int ProblemReader::Key(int view, int level) const {
+  return level * static_cast<int>(plan_.views[0].size()) + view;
 }
 
-Map<Vec3> ProblemReader::ReadNormal(int view) const {
-  const std::string path =
-      plan_.MapPath(MapKind::kNormal, view, Pass::kPhotometric);
-  CheckMapFile(path, MapKind::kNormal, plan_.views[view].width,
-               plan_.views[view].height);
+const SceneView& ProblemReader::ViewOf(int key) const {
+  const int num_views = static_cast<int>(plan_.views[0].size());
+  return plan_.View(key % num_views, key / num_views);
+}
+
+Map<float> ProblemReader::ReadDepth(int key, Pass pass) const {
+  const int num_views = static_cast<int>(plan_.views[0].size());
+  const int view = key % num_views;
+  const int level = key / num_views;
+  const auto read = [&](int at_level) {
+    const std::string path =
+        plan_.MapPath(MapKind::kDepth, view, pass, at_level);
+    const SceneView& size = plan_.View(view, at_level);
+    CheckMapFile(path, MapKind::kDepth, size.width, size.height);
+    return ReadDepthMap(path);
+  };
+  // A view that only others see as a source, with a map from an earlier run,
+  // has one of full size alone.
+  if (level > 0 && !colmap::ExistsPath(
+                       plan_.MapPath(MapKind::kDepth, view, pass, level))) {
+    const SceneView& size = ViewOf(key);
+    return ReduceDepth(read(0), size.width, size.height);
+  }
+  return read(level);
+}
+
+Map<Vec3> ProblemReader::ReadNormal(int key, Pass pass) const {
+  const int num_views = static_cast<int>(plan_.views[0].size());
+  const std::string path = plan_.MapPath(MapKind::kNormal, key % num_views,
+                                         pass, key / num_views);
+  CheckMapFile(path, MapKind::kNormal, ViewOf(key).width, ViewOf(key).height);
   return ReadNormalMap(path);
 }
 
+// A geometric pass starts from the photometric one of its level, that one from
+// the last pass of the level before.
+DepthNormalMaps ProblemReader::ReadStart(const PassPlan& pass,
+                                         const View& reference, int view) {
+  if (pass.pass == Pass::kGeometric) {
+    const int key = Key(view, pass.level);
+    return {*depth_maps_.Get(key), ReadNormal(key, Pass::kPhotometric)};
+  }
+  const int key = Key(view, pass.level + 1);
+  const Pass last = plan_.passes.back().pass;
+  return HandUp({ReadDepth(key, last), ReadNormal(key, last)},
+                ViewOf(key).camera, reference);
+}
+
 bool ProblemReader::ReadPhotos(const std::function<bool()>& stopped) {
-  std::set<int> needed;
+  // At the level that comes first, as they are kept.
+  std::map<int, int> levels;
   for (const PassPlan& pass : plan_.passes) {
     for (size_t i = 0; i < plan_.problems.size(); ++i) {
-      if (!pass.is_done[i]) {
+      if (pass.Computes(i)) {
         const ViewIndices& problem = plan_.problems[i];
-        needed.insert(problem.reference);
-        needed.insert(problem.sources.begin(), problem.sources.end());
+        levels.emplace(problem.reference, pass.level);
+        for (const int source : problem.sources) {
+          levels.emplace(source, pass.level);
+        }
       }
     }
   }
-  for (const int view : needed) {
+  for (const auto& [view, level] : levels) {
     if (stopped()) {
       return false;
     }
-    photos_.Get(view);
+    photos_.Get(Key(view, level));
   }
   return true;
 }
@@ -69,13 +110,13 @@ std::unique_ptr<ProblemInput> ProblemReader::Read(
   auto input = std::make_unique<ProblemInput>();
   const auto to_view = [&](int index) {
     View view;
-    view.camera = plan_.views[index].camera;
-    input->photos.push_back(photos_.Get(index));
+    view.camera = plan_.View(index, pass.level).camera;
+    input->photos.push_back(photos_.Get(Key(index, pass.level)));
     view.image = input->photos.back().get();
     return view;
   };
 
-  const SceneView& reference = plan_.views[problem.reference];
+  const SceneView& reference = plan_.View(problem.reference, pass.level);
   const bool is_geometric = pass.pass == Pass::kGeometric;
   Problem& to = input->problem;
   to.reference = to_view(problem.reference);
@@ -85,13 +126,14 @@ std::unique_ptr<ProblemInput> ProblemReader::Read(
     }
     to.sources.push_back(to_view(source));
     if (is_geometric) {
-      input->depth_maps.push_back(depth_maps_.Get(source));
+      input->depth_maps.push_back(depth_maps_.Get(Key(source, pass.level)));
       to.sources.back().depth = input->depth_maps.back().get();
     }
   }
-  if (is_geometric) {
-    to.depth = *depth_maps_.Get(problem.reference);
-    to.normal = ReadNormal(problem.reference);
+  if (pass.has_start) {
+    DepthNormalMaps start = ReadStart(pass, to.reference, problem.reference);
+    to.depth = std::move(start.depth);
+    to.normal = std::move(start.normal);
   }
   if (pass.options.tapa.enabled) {
     input->color = ReadColorPhoto(reference);

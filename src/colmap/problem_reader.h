@@ -10,6 +10,7 @@
 #include "src/base/map.h"
 #include "src/colmap/stereo_plan.h"
 #include "src/colmap/view_cache.h"
+#include "src/mvs/levels.h"
 #include "src/mvs/problem.h"
 
 namespace tapa {
@@ -41,13 +42,19 @@ class ProblemReader {
                                      const std::function<bool()>& stopped);
 
  private:
-  Map<float> ReadDepth(int view) const;
-  Map<Vec3> ReadNormal(int view) const;
+  // A view at a level, as caches know it, and the other way round.
+  int Key(int view, int level) const;
+  const SceneView& ViewOf(int key) const;
+  // Read maps of a pass.
+  Map<float> ReadDepth(int key, Pass pass) const;
+  Map<Vec3> ReadNormal(int key, Pass pass) const;
+  DepthNormalMaps ReadStart(const PassPlan& pass, const View& reference,
+                            int view);
 
   const StereoPlan& plan_;
   std::mutex mutex_;
   ViewCache<uint8_t> photos_;
-  // Of the photometric pass.
+  // Of photometric passes.
   ViewCache<float> depth_maps_;
 };
 

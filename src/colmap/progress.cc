@@ -38,14 +38,14 @@ void PrintWarning(const std::string& text) {
   std::cout << "WARNING: " << text << std::endl;
 }
 
-Progress::Progress(double total)
-    : total_(total), is_terminal_(isatty(STDOUT_FILENO)) {}
+Progress::Progress(double total_work)
+    : total_work_(total_work), is_terminal_(isatty(STDOUT_FILENO)) {}
 
 void Progress::CountTime() {
   const Clock::time_point now = Clock::now();
   const double cpu_now = CpuSeconds();
   if (!running_.empty()) {
-    Totals& pass = passes_[pass_];
+    Totals& pass = passes_[place_];
     pass.seconds += std::chrono::duration<double>(now - last_count_).count();
     pass.cpu_seconds += cpu_now - last_cpu_count_;
   }
@@ -53,27 +53,30 @@ void Progress::CountTime() {
   last_cpu_count_ = cpu_now;
 }
 
-int Progress::BeginView(Pass pass, const std::string& what, double megapixels) {
+int Progress::BeginView(Pass pass, int level, const std::string& what,
+                        double megapixels, double work) {
   const std::lock_guard<std::mutex> lock(mutex_);
   CountTime();
-  pass_ = pass;
+  place_ = {level, pass};
   last_update_ = last_count_;
-  running_[next_view_] = {pass, std::string(PassName(pass)) + " " + what,
-                          megapixels, last_count_, last_cpu_count_};
+  const std::string name =
+      (level > 0 ? Format("level %d ", level) : "") + PassName(pass);
+  running_[next_view_] = {place_,      name + " " + what, megapixels, work,
+                          last_count_, last_cpu_count_};
   return next_view_++;
 }
 
 std::string Progress::TimeToGo() const {
-  double done = 0;
+  double done = work_done_;
   double seconds = 0;
-  for (const auto& [pass, totals] : passes_) {
-    done += totals.megapixels;
+  for (const auto& [place, totals] : passes_) {
     seconds += totals.seconds;
   }
   for (const auto& [number, view] : running_) {
-    done += view.share * view.megapixels;
+    done += view.share * view.work;
   }
-  const double share = total_ > 0 ? std::min(1.0, done / total_) : 1.0;
+  const double share =
+      total_work_ > 0 ? std::min(1.0, done / total_work_) : 1.0;
   return Format(
       "%5.1f %%  %s to go", 100 * share,
       share > 0 ? TimeText(seconds * (1 - share) / share).c_str() : "?");
@@ -108,7 +111,8 @@ void Progress::EndView(int number) {
   const View view = running_.at(number);
   const bool alone = running_.size() == 1;
   running_.erase(number);
-  passes_[view.pass].megapixels += view.megapixels;
+  passes_[view.place].megapixels += view.megapixels;
+  work_done_ += view.work;
   const double seconds =
       std::chrono::duration<double>(last_count_ - view.begin).count();
   // Other views' CPU time cannot be told from this one's.
@@ -137,23 +141,41 @@ void Progress::Clear() {
 }
 
 void Progress::PrintSummary() const {
+  // Per pixel of full size, so that coarse levels count for what they cost.
+  std::string text;
+  double full_megapixels = 0;
   double seconds = 0;
   double cpu_seconds = 0;
-  std::string text;
-  for (const auto& [pass, totals] : passes_) {
-    if (totals.megapixels > 0) {
+  double coarse_seconds = 0;
+  double coarse_cpu_seconds = 0;
+  for (const auto& [place, totals] : passes_) {
+    if (place.level > 0) {
+      coarse_seconds += totals.seconds;
+      coarse_cpu_seconds += totals.cpu_seconds;
+    } else if (totals.megapixels > 0) {
       const double pass_seconds = totals.seconds / totals.megapixels;
       const double pass_cpu_seconds = totals.cpu_seconds / totals.megapixels;
-      text += Format("%s %.1f (CPU %.1f), ", PassName(pass), pass_seconds,
-                     pass_cpu_seconds);
+      text += Format("%s %.1f (CPU %.1f), ", PassName(place.pass),
+                     pass_seconds, pass_cpu_seconds);
+      full_megapixels = std::max(full_megapixels, totals.megapixels);
       seconds += pass_seconds;
       cpu_seconds += pass_cpu_seconds;
     }
   }
-  if (!text.empty()) {
-    std::cout << "Seconds per megapixel and view: " << text << "together "
-              << Format("%.1f (CPU %.1f)", seconds, cpu_seconds) << std::endl;
+  if (text.empty()) {
+    return;
   }
+  if (coarse_seconds > 0) {
+    coarse_seconds /= full_megapixels;
+    coarse_cpu_seconds /= full_megapixels;
+    text = Format("coarse levels %.1f (CPU %.1f), ", coarse_seconds,
+                  coarse_cpu_seconds) +
+           text;
+    seconds += coarse_seconds;
+    cpu_seconds += coarse_cpu_seconds;
+  }
+  std::cout << "Seconds per megapixel and view: " << text << "together "
+            << Format("%.1f (CPU %.1f)", seconds, cpu_seconds) << std::endl;
 }
 
 }  // namespace tapa

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iostream>
 #include <optional>
+#include <sstream>
 #include <unordered_set>
 
 #include "src/base/failure.h"
@@ -80,12 +81,12 @@ class MissingFiles {
 
   // What a view lacks to be used; empty: nothing.
   std::string LackOf(int view) const {
-    const std::string& image_path = plan_->views[view].image_path;
+    const std::string& image_path = plan_->View(view, 0).image_path;
     if (!ExistsPath(image_path)) {
       return "its image " + image_path + " is missing";
     }
     const std::string map_path =
-        plan_->MapPath(MapKind::kDepth, view, Pass::kPhotometric);
+        plan_->MapPath(MapKind::kDepth, view, Pass::kPhotometric, 0);
     if (options_.geom_consistency && computed_.count(view) == 0 &&
         !ExistsPath(map_path)) {
       return "the map " + map_path +
@@ -104,7 +105,7 @@ class MissingFiles {
     has_dropped_ = true;
   }
 
-  const std::string& Name(int view) const { return plan_->views[view].name; }
+  const std::string& Name(int view) const { return plan_->View(view, 0).name; }
 
   const PatchMatchOptions& options_;
   StereoPlan* const plan_;
@@ -115,7 +116,7 @@ class MissingFiles {
 void CheckDepthRanges(const PatchMatchOptions& options,
                       const StereoPlan& plan) {
   for (const ViewIndices& problem : plan.problems) {
-    const SceneView& view = plan.views[problem.reference];
+    const SceneView& view = plan.View(problem.reference, 0);
     if (options.depth_min < 0 && !(view.depth_min > 0)) {
       throw Failure("The sparse model has no points in view " + view.name +
                     " to take its range of depths from; set "
@@ -125,10 +126,10 @@ void CheckDepthRanges(const PatchMatchOptions& options,
 }
 
 // Views that this run does not compute count as well.
-bool HasMaps(const StereoPlan& plan, Pass pass) {
-  for (int view = 0; view < static_cast<int>(plan.views.size()); ++view) {
+bool HasMaps(const StereoPlan& plan, Pass pass, int level) {
+  for (int view = 0; view < static_cast<int>(plan.views[0].size()); ++view) {
     for (const MapKind kind : {MapKind::kDepth, MapKind::kNormal}) {
-      if (ExistsPath(plan.MapPath(kind, view, pass))) {
+      if (ExistsPath(plan.MapPath(kind, view, pass, level))) {
         return true;
       }
     }
@@ -150,41 +151,58 @@ OptionValues RecordOf(PatchMatchOptions options,
   return OptionsOfMaps(options);
 }
 
+// What a record says of the passes before, whose maps may be gone later.
+std::string DescribePass(const PassPlan& pass) {
+  std::ostringstream text;
+  text << "level " << pass.level << " " << PassName(pass.pass) << " "
+       << pass.options.num_iterations << " from "
+       << pass.options.first_perturbation;
+  return text.str();
+}
+
+int LongestSide(const std::vector<SceneView>& views) {
+  int longest = 0;
+  for (const SceneView& view : views) {
+    longest = std::max({longest, view.width, view.height});
+  }
+  return longest;
+}
+
 // The passes, without what the maps that are there have to be asked for.
 std::vector<PassPlan> Passes(const PatchMatchOptions& options,
                              const StereoPlan& plan) {
   std::vector<PassPlan> passes;
-  for (const Pass pass : {Pass::kPhotometric, Pass::kGeometric}) {
-    if (pass > FinalPass(options)) {
-      continue;
-    }
-    PassPlan to;
-    to.pass = pass;
-    to.options = PassOptions(options, pass);
-    to.record = RecordOf(to.options, plan.views);
-    if (!passes.empty()) {
-      // It starts from the maps of the pass before, which may be gone later.
-      for (const char* name : {"num_iterations", "window_step"}) {
-        to.record[std::string("first_") + name] = passes.back().record.at(name);
+  const int num_levels = static_cast<int>(plan.views.size());
+  std::string passes_before;
+  for (int level = num_levels - 1; level >= 0; --level) {
+    for (const Pass pass : {Pass::kPhotometric, Pass::kGeometric}) {
+      if (pass > FinalPass(options)) {
+        continue;
       }
+      PassPlan to;
+      to.pass = pass;
+      to.level = level;
+      to.options = PassOptions(options, pass, level, num_levels);
+      to.has_start = !passes.empty();
+      to.record = RecordOf(to.options, plan.views[0]);
+      if (to.has_start) {
+        to.record["passes_before"] = passes_before;
+      }
+      passes_before += (to.has_start ? ", " : "") + DescribePass(to);
+      to.has_maps = HasMaps(plan, pass, level);
+      // No pass before the final one filters.
+      const bool is_final = level == 0 && pass == FinalPass(options);
+      to.writes_graphs = is_final && options.write_consistency_graph;
+      to.writes_pictures =
+          is_final && options.tapa.enabled && !options.tapa_debug.empty();
+      passes.push_back(to);
     }
-    to.has_maps = HasMaps(plan, pass);
-    // The pass before the final one does not filter.
-    const bool is_final = pass == FinalPass(options);
-    to.writes_graphs = is_final && options.write_consistency_graph;
-    to.writes_pictures =
-        is_final && options.tapa.enabled && !options.tapa_debug.empty();
-    passes.push_back(to);
   }
   return passes;
 }
 
 // How a pass comes to values that nobody gave, if differences name such.
 std::string PassLimits(const std::string& differences, bool is_final) {
-  if (!is_final && differences.find("window_step") != std::string::npos) {
-    return "; before a geometric pass window_step is at least "
-           "first_window_step";
-  }
   if (is_final && differences.find("num_iterations") != std::string::npos) {
     return "; in the geometric pass num_iterations is at most "
            "num_geom_iterations";
@@ -198,7 +216,7 @@ void CheckRecord(const StereoPlan& plan, const PassPlan& pass) {
                            " maps in " + plan.location.StereoPath() +
                            " were made with ";
   const std::optional<OptionValues> recorded =
-      ReadOptionsRecord(plan.location.RecordPath(pass.pass));
+      ReadOptionsRecord(plan.location.RecordPath(pass.pass, pass.level));
   if (!recorded) {
     PrintWarning(maps +
                  "options that are not known (by another version of COLMAP?); "
@@ -227,13 +245,15 @@ void CheckRecord(const StereoPlan& plan, const PassPlan& pass) {
 }
 
 // Whether a map is there. Throws Failure if it is damaged.
-bool HasMap(const StereoPlan& plan, MapKind kind, int view, Pass pass) {
-  const std::string path = plan.MapPath(kind, view, pass);
+bool HasMap(const StereoPlan& plan, MapKind kind, int view, Pass pass,
+            int level) {
+  const std::string path = plan.MapPath(kind, view, pass, level);
   if (!ExistsPath(path)) {
     return false;
   }
   try {
-    CheckMapFile(path, kind, plan.views[view].width, plan.views[view].height);
+    const SceneView& size = plan.View(view, level);
+    CheckMapFile(path, kind, size.width, size.height);
   } catch (const Failure& error) {
     throw Failure(std::string(error.what()) +
                   "; remove it to have it computed again, or take the "
@@ -244,25 +264,93 @@ bool HasMap(const StereoPlan& plan, MapKind kind, int view, Pass pass) {
 
 // Whether all maps of a view are there. Throws Failure if one is damaged.
 bool IsDone(const StereoPlan& plan, const PassPlan& pass, int view) {
-  const bool has_depth = HasMap(plan, MapKind::kDepth, view, pass.pass);
-  const bool has_normal = HasMap(plan, MapKind::kNormal, view, pass.pass);
-  const bool has_graph =
-      !pass.writes_graphs ||
-      HasMap(plan, MapKind::kConsistencyGraph, view, pass.pass);
+  const auto has = [&](MapKind kind) {
+    return HasMap(plan, kind, view, pass.pass, pass.level);
+  };
+  const bool has_depth = has(MapKind::kDepth);
+  const bool has_normal = has(MapKind::kNormal);
+  const bool has_graph = !pass.writes_graphs || has(MapKind::kConsistencyGraph);
   return has_depth && has_normal && has_graph;
 }
 
 // Looks at the maps that are there already.
 void CheckMaps(StereoPlan* plan) {
   const bool is_geometric = plan->passes.back().pass == Pass::kGeometric;
-  for (const ViewIndices& problem : plan->problems) {
-    for (PassPlan& pass : plan->passes) {
-      pass.is_done.push_back(IsDone(*plan, pass, problem.reference));
+  for (PassPlan& pass : plan->passes) {
+    for (const ViewIndices& problem : plan->problems) {
+      pass.is_done.push_back(pass.has_maps &&
+                             IsDone(*plan, pass, problem.reference));
     }
+  }
+  for (const ViewIndices& problem : plan->problems) {
     for (const int source : problem.sources) {
       if (is_geometric) {
-        HasMap(*plan, MapKind::kDepth, source, Pass::kPhotometric);
+        HasMap(*plan, MapKind::kDepth, source, Pass::kPhotometric, 0);
       }
+    }
+  }
+}
+
+// Maps of full size are what the user gets. A coarser one is needed for a view
+// that starts from it, and for one that has that view as a source in a geometric
+// pass.
+void FindNeeded(StereoPlan* plan) {
+  const size_t num_problems = plan->problems.size();
+  std::vector<int> problem_of(plan->views[0].size(), -1);
+  for (size_t i = 0; i < num_problems; ++i) {
+    problem_of[plan->problems[i].reference] = static_cast<int>(i);
+  }
+  for (PassPlan& pass : plan->passes) {
+    pass.is_needed.assign(num_problems, pass.level == 0);
+  }
+  for (size_t p = plan->passes.size() - 1; p > 0; --p) {
+    const PassPlan& pass = plan->passes[p];
+    std::vector<bool>& before = plan->passes[p - 1].is_needed;
+    for (size_t i = 0; i < num_problems; ++i) {
+      if (!pass.Computes(i)) {
+        continue;
+      }
+      before[i] = true;
+      for (const int source : plan->problems[i].sources) {
+        if (pass.pass == Pass::kGeometric && problem_of[source] >= 0) {
+          before[problem_of[source]] = true;
+        }
+      }
+    }
+  }
+}
+
+// Whether the maps of a coarse level can be gone on with: another run, with
+// other options or photographs, may have left them when it was stopped.
+bool IsUsable(const StereoPlan& plan, const PassPlan& pass) {
+  try {
+    const std::optional<OptionValues> recorded = ReadOptionsRecord(
+        plan.location.RecordPath(pass.pass, pass.level));
+    if (!recorded || *recorded != pass.record) {
+      return false;
+    }
+    for (const ViewIndices& problem : plan.problems) {
+      IsDone(plan, pass, problem.reference);
+    }
+    return true;
+  } catch (const Failure&) {
+    return false;
+  }
+}
+
+// Compares the maps that are there with what this run would make. Those of
+// coarse levels are nobody's result: all go if one does not fit.
+void CheckRecords(StereoPlan* plan) {
+  for (const PassPlan& pass : plan->passes) {
+    if (pass.has_maps && pass.level == 0) {
+      CheckRecord(*plan, pass);
+    } else if (pass.has_maps && !IsUsable(*plan, pass)) {
+      plan->drops_levels = true;
+    }
+  }
+  if (plan->drops_levels) {
+    for (PassPlan& pass : plan->passes) {
+      pass.has_maps = pass.has_maps && pass.level == 0;
     }
   }
 }
@@ -285,8 +373,9 @@ int PassPlan::NumDone() const {
   return static_cast<int>(std::count(is_done.begin(), is_done.end(), true));
 }
 
-std::string StereoPlan::MapPath(MapKind kind, int view, Pass pass) const {
-  return location.MapPath(kind, views[view].name, pass);
+std::string StereoPlan::MapPath(MapKind kind, int view, Pass pass,
+                                int level) const {
+  return location.MapPath(kind, View(view, level).name, pass, level);
 }
 
 StereoPlan MakeStereoPlan(const PatchMatchOptions& options,
@@ -296,18 +385,19 @@ StereoPlan MakeStereoPlan(const PatchMatchOptions& options,
   const colmap::mvs::Model model = ReadWorkspace(location);
   StereoPlan plan;
   plan.location = location;
-  plan.views = SceneViews(model, options.max_image_size);
+  plan.views.push_back(SceneViews(model, options.max_image_size));
+  const int num_levels = NumLevels(options, LongestSide(plan.views[0]));
+  for (int level = 1; level < num_levels; ++level) {
+    plan.views.push_back(SceneViews(model, options.max_image_size, level));
+  }
   plan.problems = ResolveProblems(ReadProblemConfig(location.ConfigPath()),
                                   model, options.min_triangulation_angle);
   MissingFiles::Drop(options, &plan);
   CheckDepthRanges(options, plan);
   plan.passes = Passes(options, plan);
-  for (const PassPlan& pass : plan.passes) {
-    if (pass.has_maps) {
-      CheckRecord(plan, pass);
-    }
-  }
+  CheckRecords(&plan);
   CheckMaps(&plan);
+  FindNeeded(&plan);
   WarnOfMissingPictures(plan);
   std::cout << "Configuration has " << plan.problems.size() << " views."
             << std::endl;

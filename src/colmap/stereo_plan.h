@@ -14,13 +14,19 @@
 
 namespace tapa {
 
-// What a pass has to do.
+// What a pass at a level has to do.
 struct PassPlan {
   Pass pass;
+  // See src/mvs/levels.h.
+  int level;
   // Those in force in it (PassOptions).
   colmap::mvs::PatchMatchOptions options;
-  // For each of the plan's problems, whether its maps are there already.
+  // Whether it starts from the maps of the pass before.
+  bool has_start = false;
+  // For each of the plan's problems, whether its maps are there already, and
+  // whether anything needs them.
   std::vector<bool> is_done;
+  std::vector<bool> is_needed;
   // What its maps depend on. To be written down if there are no maps yet, of
   // whatever view: the record is about all maps beside it.
   OptionValues record;
@@ -30,6 +36,9 @@ struct PassPlan {
   bool writes_pictures = false;
 
   int NumDone() const;
+  bool Computes(size_t problem) const {
+    return is_needed[problem] && !is_done[problem];
+  }
 };
 
 // What a run of dense stereo computes: the views that a workspace's
@@ -37,14 +46,19 @@ struct PassPlan {
 // that are there already, so that a run that was stopped goes on where it was.
 struct StereoPlan {
   WorkspaceLocation location;
-  // All images of the model.
-  std::vector<SceneView> views;
+  // All images of the model, at each level.
+  std::vector<std::vector<SceneView>> views;
   // Indices into them.
   std::vector<ViewIndices> problems;
   // One after the other; the maps of the last one are the result.
   std::vector<PassPlan> passes;
+  // Whether maps of coarse levels are there that this run cannot go on with.
+  bool drops_levels = false;
 
-  std::string MapPath(MapKind kind, int view, Pass pass) const;
+  const SceneView& View(int view, int level) const {
+    return views[level][view];
+  }
+  std::string MapPath(MapKind kind, int view, Pass pass, int level) const;
 };
 
 // Looks, before anything is computed or written, for whatever can be wrong with

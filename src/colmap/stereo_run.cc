@@ -27,13 +27,19 @@ double Megapixels(const SceneView& view) {
   return 1e-6 * view.width * view.height;
 }
 
-// Megapixels that are left to compute.
+// What a view takes, in megapixels times iterations.
+double Work(const PassPlan& pass, const SceneView& view) {
+  return Megapixels(view) * pass.options.num_iterations;
+}
+
+// What is left to compute.
 double TotalWork(const StereoPlan& plan) {
   double total = 0;
   for (const PassPlan& pass : plan.passes) {
     for (size_t i = 0; i < plan.problems.size(); ++i) {
-      if (!pass.is_done[i]) {
-        total += Megapixels(plan.views[plan.problems[i].reference]);
+      if (pass.Computes(i)) {
+        total +=
+            Work(pass, plan.View(plan.problems[i].reference, pass.level));
       }
     }
   }
@@ -66,17 +72,21 @@ bool StereoRun::Run() {
       return false;
     }
   }
+  RemoveLevels(plan_.location);
   progress_.PrintSummary();
   return true;
 }
 
 // Finds out, before hours are spent, whether files can be written.
 void StereoRun::PrepareFolders() const {
+  if (plan_.drops_levels) {
+    RemoveLevels(plan_.location);
+  }
   std::set<std::string> map_folders;
   std::set<std::string> picture_folders;
   for (const PassPlan& pass : plan_.passes) {
     for (size_t i = 0; i < plan_.problems.size(); ++i) {
-      if (pass.is_done[i]) {
+      if (!pass.Computes(i)) {
         continue;
       }
       const int view = plan_.problems[i].reference;
@@ -84,11 +94,13 @@ void StereoRun::PrepareFolders() const {
            {MapKind::kDepth, MapKind::kNormal, MapKind::kConsistencyGraph}) {
         if (kind != MapKind::kConsistencyGraph || pass.writes_graphs) {
           map_folders.insert(
-              colmap::GetParentDir(plan_.MapPath(kind, view, pass.pass)));
+              colmap::GetParentDir(
+                  plan_.MapPath(kind, view, pass.pass, pass.level)));
         }
       }
       if (pass.writes_pictures) {
-        picture_folders.insert(PictureFolder(pass, plan_.views[view]));
+        picture_folders.insert(
+            PictureFolder(pass, plan_.View(view, pass.level)));
       }
     }
   }
@@ -100,9 +112,20 @@ void StereoRun::PrepareFolders() const {
   }
 }
 
+// Whether there is anything to do in a pass.
+bool StereoRun::Computes(const PassPlan& pass) const {
+  for (size_t i = 0; i < plan_.problems.size(); ++i) {
+    if (pass.Computes(i)) {
+      return true;
+    }
+  }
+  return false;
+}
+
 bool StereoRun::ComputePass(const PassPlan& pass) {
-  if (!pass.has_maps) {
-    WriteOptionsRecord(plan_.location.RecordPath(pass.pass), pass.record);
+  if (!pass.has_maps && Computes(pass)) {
+    WriteOptionsRecord(plan_.location.RecordPath(pass.pass, pass.level),
+                       pass.record);
   }
   std::atomic<size_t> next(0);
   std::exception_ptr error;
@@ -149,21 +172,21 @@ bool StereoRun::ComputePass(const PassPlan& pass) {
 
 bool StereoRun::ComputeProblem(size_t number, const PassPlan& pass,
                                int device) {
-  if (pass.is_done[number]) {
+  if (!pass.Computes(number)) {
     return true;
   }
   const ViewIndices& problem = plan_.problems[number];
-  const SceneView& view = plan_.views[problem.reference];
-  const int progress_view =
-      progress_.BeginView(pass.pass,
-                          std::to_string(number + 1) + "/" +
-                              std::to_string(NumViews()) + " " + view.name,
-                          Megapixels(view));
+  const SceneView& view = plan_.View(problem.reference, pass.level);
+  const int progress_view = progress_.BeginView(
+      pass.pass, pass.level,
+      std::to_string(number + 1) + "/" + std::to_string(NumViews()) + " " +
+          view.name,
+      Megapixels(view), Work(pass, view));
   if (!ComputeView({pass, problem, view, progress_view}, device)) {
     return false;
   }
   progress_.EndView(progress_view);
-  num_done_ += pass.pass == plan_.passes.back().pass;
+  num_done_ += &pass == &plan_.passes.back();
   return true;
 }
 
@@ -192,8 +215,8 @@ bool StereoRun::ComputeView(const Task& task, int device) {
 bool StereoRun::ComputeViewOn(int device, const Task& task) {
   const auto stopped = [this] { return Stopped(); };
   Options options = EngineOptions(task.pass.options);
-  options.seed =
-      ViewSeed(task.pass.options.seed, task.view.name, task.pass.pass);
+  options.seed = ViewSeed(task.pass.options.seed, task.view.name,
+                          task.pass.pass, task.pass.level);
   options.device = device;
   const std::unique_ptr<ProblemInput> input =
       reader_.Read(task.problem, task.pass, stopped);
@@ -229,7 +252,8 @@ bool StereoRun::ComputeViewOn(int device, const Task& task) {
 bool StereoRun::WriteView(const Task& task, const Estimate& estimate,
                           const ProblemInput& input, const TapaRecord& record) {
   const auto path = [&](MapKind kind) {
-    return plan_.MapPath(kind, task.problem.reference, task.pass.pass);
+    return plan_.MapPath(kind, task.problem.reference, task.pass.pass,
+                         task.pass.level);
   };
   // Before the maps, so that a run that is cut off here draws them again.
   if (task.pass.writes_pictures) {

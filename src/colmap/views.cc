@@ -2,10 +2,12 @@
 
 #include <FreeImage.h>
 
+#include <algorithm>
 #include <cstring>
 
 #include "mvs/image.h"
 #include "src/base/failure.h"
+#include "src/mvs/levels.h"
 #include "util/bitmap.h"
 
 namespace tapa {
@@ -73,7 +75,7 @@ colmap::Bitmap ReadBitmap(const SceneView& view, bool in_color) {
 }  // namespace
 
 std::vector<SceneView> SceneViews(const colmap::mvs::Model& model,
-                                  int max_image_size) {
+                                  int max_image_size, int level) {
   const auto depth_ranges = model.ComputeDepthRanges();
   std::vector<SceneView> views;
   for (size_t i = 0; i < model.images.size(); ++i) {
@@ -86,6 +88,10 @@ std::vector<SceneView> SceneViews(const colmap::mvs::Model& model,
     if (max_image_size > 0) {
       image.Downsize(max_image_size, max_image_size);
     }
+    const int longest_side =
+        static_cast<int>(std::max(image.GetWidth(), image.GetHeight()));
+    const int size_at_level = LongestSideAtLevel(longest_side, level);
+    image.Downsize(size_at_level, size_at_level);
     view.width = static_cast<int>(image.GetWidth());
     view.height = static_cast<int>(image.GetHeight());
     view.camera = ToCamera(image);

@@ -27,10 +27,11 @@ struct SceneView {
   double depth_max = -1;
 };
 
-// The images of the model, in its order. max_image_size: photographs that are
-// wider or higher, in pixels, are scaled down to it; if <= 0, none is.
+// The images of the model, in its order, at a level (src/mvs/levels.h).
+// max_image_size: photographs that are wider or higher, in pixels, are scaled
+// down to it for level 0; if <= 0, none is.
 std::vector<SceneView> SceneViews(const colmap::mvs::Model& model,
-                                  int max_image_size);
+                                  int max_image_size, int level = 0);
 
 // Read the photograph, in grey or in colour, at the size that stereo works at.
 // Throw Failure if it is missing, damaged, or not of the size that its camera

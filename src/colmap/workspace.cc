@@ -1,5 +1,8 @@
 #include "src/colmap/workspace.h"
 
+#include <filesystem>
+#include <system_error>
+
 #include "mvs/workspace.h"
 #include "src/base/failure.h"
 #include "src/colmap/fatal_errors.h"
@@ -65,19 +68,37 @@ std::string WorkspaceLocation::ConfigPath() const {
              : config_path;
 }
 
+std::string WorkspaceLocation::LevelsPath() const {
+  return colmap::JoinPaths(StereoPath(), "levels");
+}
+
+std::string WorkspaceLocation::LevelPath(int level) const {
+  return level == 0 ? StereoPath()
+                    : colmap::JoinPaths(LevelsPath(), std::to_string(level));
+}
+
 std::string WorkspaceLocation::MapPath(MapKind kind,
-                                       const std::string& image_name,
-                                       Pass pass) const {
+                                       const std::string& image_name, Pass pass,
+                                       int level) const {
   const char* folder = kind == MapKind::kDepth    ? "depth_maps"
                        : kind == MapKind::kNormal ? "normal_maps"
                                                   : "consistency_graphs";
-  return colmap::JoinPaths(StereoPath(), folder,
+  return colmap::JoinPaths(LevelPath(level), folder,
                            image_name + "." + PassName(pass) + ".bin");
 }
 
-std::string WorkspaceLocation::RecordPath(Pass pass) const {
-  return colmap::JoinPaths(StereoPath(),
+std::string WorkspaceLocation::RecordPath(Pass pass, int level) const {
+  return colmap::JoinPaths(LevelPath(level),
                            std::string("options.") + PassName(pass) + ".txt");
+}
+
+void RemoveLevels(const WorkspaceLocation& location) {
+  std::error_code error;
+  std::filesystem::remove_all(location.LevelsPath(), error);
+  if (error) {
+    throw Failure("The maps of coarse levels in " + location.LevelsPath() +
+                  " cannot be removed: " + error.message());
+  }
 }
 
 colmap::mvs::Model ReadWorkspace(const WorkspaceLocation& location) {

@@ -23,11 +23,20 @@ struct WorkspaceLocation {
   std::string StereoPath() const;
   std::string ConfigPath() const;
 
-  std::string MapPath(MapKind kind, const std::string& image_name,
-                      Pass pass) const;
+  std::string MapPath(MapKind kind, const std::string& image_name, Pass pass,
+                      int level) const;
   // Record of the options that made the maps of a pass (options_record.h).
-  std::string RecordPath(Pass pass) const;
+  std::string RecordPath(Pass pass, int level) const;
+  // Folder of the maps of all levels but level 0 (src/mvs/levels.h), which a
+  // run removes at its end.
+  std::string LevelsPath() const;
+
+ private:
+  std::string LevelPath(int level) const;
 };
+
+// Removes the folder of coarse levels, if there is one. Throws Failure.
+void RemoveLevels(const WorkspaceLocation& location);
 
 // Reads the sparse model, and makes the stereo folder of a PMVS workspace.
 // Throws Failure if parts of the workspace are missing; ends the program with

@@ -71,22 +71,23 @@ void CheckProblem(const Options& options, const Problem& problem) {
       !HasSize(*problem.reference_color, image)) {
     Fail("the colour photograph has another size than the grey one");
   }
-  if (options.geom_consistency &&
+  const bool starts_at_random =
+      problem.depth.empty() && !options.geom_consistency;
+  if (!starts_at_random &&
       !(HasSize(problem.depth, image) && HasSize(problem.normal, image))) {
     Fail(
-        "the geometric pass needs a depth and a normal map of the reference "
-        "image's size");
+        "an estimation that starts from maps, as the geometric pass does, needs "
+        "a depth and a normal map of the reference image's size");
   }
 }
 
-// The photometric pass starts from random planes, the geometric one from the
-// given maps, with random planes where these have none. Returns false if
-// stopped.
+// An estimation starts from the given maps, if there are any, and from random
+// planes where these have none. Returns false if stopped.
 bool InitializeEstimate(const Options& options, const Control& control,
                         Problem* problem) {
   const RefCamera camera = CameraTable(*problem).reference();
   const Map<uint8_t>& image = *problem->reference.image;
-  if (!options.geom_consistency) {
+  if (problem->depth.empty()) {
     problem->depth = Map<float>(image.width(), image.height());
     problem->normal = Map<Vec3>(image.width(), image.height());
   }
@@ -144,7 +145,9 @@ std::optional<Estimate> EstimateDepth(const Options& options, Problem problem,
                                          ? MakeCpuBackend(options, problem)
                                          : MakeCudaBackend(options, problem);
 
-  const Schedule schedule(options, static_cast<int>(problem.sources.size()));
+  const bool has_start = !problem.depth.empty();
+  const Schedule schedule(options, static_cast<int>(problem.sources.size()),
+                          has_start);
   // The first costs take about as long as one sweep.
   StepProgress progress(control, schedule.num_sweeps() + 1);
   if (!InitializeEstimate(options, control, &problem)) {
@@ -160,7 +163,7 @@ std::optional<Estimate> EstimateDepth(const Options& options, Problem problem,
   std::unique_ptr<TapaStages> tapa;
   if (options.tapa.enabled) {
     tapa = std::make_unique<TapaStages>(options, problem, control);
-    tapa->Begin(backend.get());
+    tapa->Begin(has_start, backend.get());
   }
 
   for (int i = 0; i < schedule.num_sweeps(); ++i) {

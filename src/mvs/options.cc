@@ -8,6 +8,9 @@ void Options::Check() const {
   };
   VisitSharedOptions(check, this);
   VisitTapaOptions(&tapa, check);
+  VisitSearchOptions(&search, check);
+  check({"first_perturbation", "", OptionRange::From(0, 1).WithoutMin()},
+        &first_perturbation);
   check({"device", "", OptionRange::AtLeast(0).OrMinusOne("the CPU")}, &device);
   check({"num_threads", "", NumThreadsRange()}, &num_threads);
 }

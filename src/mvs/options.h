@@ -136,16 +136,42 @@ void VisitTapaOptions(Options* options, const Visitor& visit) {
          Range::From(0, 1));
 }
 
+// How much is tried before an estimate is kept, where COLMAP has no choice. What
+// each is for stands in VisitSearchOptions. COLMAP's own: true and 0.
+struct SearchOptions {
+  bool try_all = false;
+  double hysteresis = 0.1;
+};
+
+// The table of these options, as VisitTapaOptions.
+template <typename Options, typename Visitor>
+void VisitSearchOptions(Options* options, const Visitor& visit) {
+  visit(OptionEntry{"try_all",
+                    "Try in every sweep all three random changes (of depth and "
+                    "normal, of the normal, of the depth), not one that is "
+                    "drawn, and the plane of the pixel before even where it is "
+                    "the pixel's own"},
+        &options->try_all);
+  visit(OptionEntry{"hysteresis",
+                    "By how much (of 1 - NCC) another hypothesis must be "
+                    "better than an estimate from a coarser level or another "
+                    "pass where there is no texture; the more there is, the "
+                    "less",
+                    OptionRange::From(0, 2)},
+        &options->hysteresis);
+}
+
 // Parameters of one depth map estimation. The defaults are COLMAP's
 // (Schoenberger et al., "Pixelwise View Selection for Unstructured Multi-View
-// Stereo", ECCV 2016), but for fewer samples (15 there) and iterations (5).
+// Stereo", ECCV 2016), but for fewer samples (15 there, in every row
+// and column of the window), iterations (5) and random changes (SearchOptions).
 // Angles are in degrees.
 struct Options {
   // Half size of the correlation window, in pixels: the window has
   // 2 * window_radius + 1 rows and columns.
   int window_radius = 5;
   // Distance between the samples in the window, in pixels: 1 or 2.
-  int window_step = 1;
+  int window_step = 2;
   // Spread of the bilateral weights over distance in pixels; if <= 0, it is
   // window_radius.
   double sigma_spatial = -1;
@@ -153,7 +179,7 @@ struct Options {
   double sigma_color = 0.2;
 
   // Number of source views drawn with replacement per pixel and sweep.
-  int num_samples = 8;
+  int num_samples = 4;
   // Spread of the likelihood of a view's cost (1 - NCC).
   double ncc_sigma = 0.6;
   // Triangulation angle below which a view's prior falls off, in degrees.
@@ -162,7 +188,11 @@ struct Options {
   double incident_angle_sigma = 0.9;
 
   // Number of iterations of four sweeps each.
-  int num_iterations = 3;
+  int num_iterations = 4;
+  // Relative size of the random changes in the first sweep, at most 1. They
+  // shrink by half in every iteration.
+  double first_perturbation = 1;
+  SearchOptions search;
 
   // Geometric pass: start from the given maps and add the geometric term.
   bool geom_consistency = true;

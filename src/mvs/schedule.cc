@@ -7,11 +7,16 @@
 
 namespace tapa {
 
-Schedule::Schedule(const Options& options, int num_sources)
+Schedule::Schedule(const Options& options, int num_sources, bool has_start)
     : num_iterations_(options.num_iterations),
+      first_perturbation_(options.first_perturbation),
       checks_consistency_(ChecksConsistency(options)) {
   common_.seed = options.seed;
   common_.num_samples = options.num_samples;
+  common_.try_all = options.search.try_all;
+  if (has_start) {
+    common_.hysteresis = static_cast<float>(options.search.hysteresis);
+  }
   common_.window_radius = static_cast<float>(options.window_radius);
   common_.selection = ViewSelection::FromSigma(options.ncc_sigma);
   common_.prior = ViewPrior::FromAngles(options.min_triangulation_angle,
@@ -44,7 +49,7 @@ SweepParams Schedule::At(int index) const {
   SweepParams params = common_;
   params.index = index;
   params.perturbation = static_cast<float>(
-      std::pow(2.0, -(iteration + sweep / double{kSweepsPerIteration})));
+      first_perturbation_ * std::pow(2.0, -(iteration + sweep / double{kSweepsPerIteration})));
   params.prev_prob_weight = static_cast<float>(index) / num_sweeps();
   params.check_consistency = checks_consistency_ && index + 1 == num_sweeps();
   return params;

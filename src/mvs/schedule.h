@@ -13,7 +13,9 @@ class Schedule {
  public:
   static constexpr int kSweepsPerIteration = kNumDirections;
 
-  Schedule(const Options& options, int num_sources);
+  // has_start: whether the estimation starts from given maps, which then have
+  // to be beaten (SearchOptions::hysteresis).
+  Schedule(const Options& options, int num_sources, bool has_start);
 
   int num_sweeps() const { return num_iterations_ * kSweepsPerIteration; }
 
@@ -28,6 +30,7 @@ class Schedule {
 
  private:
   const int num_iterations_;
+  const double first_perturbation_;
   const bool checks_consistency_;
   // What all sweeps have in common.
   SweepParams common_;

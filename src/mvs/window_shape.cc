@@ -6,6 +6,7 @@ WindowShape::WindowShape(const Options& options)
     : radius(options.window_radius),
       step(options.window_step),
       row_samples(2 * radius / step + 1),
+      has_corners(step == 1 || row_samples < 4),
       sigma_spatial(options.sigma_spatial > 0 ? options.sigma_spatial : radius),
       sigma_color(options.sigma_color) {
   const double sigma_intensity = 255 * sigma_color;

@@ -2,6 +2,7 @@
 #define TAPA_SRC_MVS_WINDOW_SHAPE_H_
 
 #include "src/mvs/options.h"
+#include "src/mvs/sweep/host_device.h"
 
 namespace tapa {
 
@@ -15,6 +16,9 @@ struct WindowShape {
   int step = 1;
   // Samples in a row and in a column.
   int row_samples = 11;
+  // Sparse windows go without their corners, the samples that are farthest away:
+  // of 36 samples 32 are left, a whole number of SIMD vectors.
+  bool has_corners = true;
   // Standard deviations of the weights: over distance in pixels, and over
   // difference in intensity (0 to 1).
   double sigma_spatial = 5;
@@ -23,6 +27,13 @@ struct WindowShape {
   // in pixels and of the squared difference in intensity (0 to 255).
   float spatial_scale = 0;
   float color_scale = 0;
+
+  // Whether the window has a sample at these multiples of the step from its
+  // centre, in pixels, neither of them farther than the radius.
+  TAPA_INLINE bool Contains(int dx, int dy) const {
+    return has_corners || (dx > -radius && dx < radius) ||
+           (dy > -radius && dy < radius);
+  }
 };
 
 }  // namespace tapa

@@ -49,7 +49,8 @@ std::string Text(const Options& options) {
   };
   VisitSharedOptions(add, &options);
   VisitTapaOptions(&options.tapa, add);
-  text << options.num_threads;
+  VisitSearchOptions(&options.search, add);
+  text << options.first_perturbation << " " << options.num_threads;
   return text.str();
 }
 
@@ -70,6 +71,8 @@ TEST(EngineOptions, EveryOptionIsPassedOn) {
   };
   VisitSharedOptions(change, &options);
   VisitTapaOptions(&options.tapa, change);
+  VisitSearchOptions(&options.search, change);
+  change(OptionEntry{"first_perturbation", ""}, &options.first_perturbation);
   change(OptionEntry{"num_threads", ""}, &options.num_threads);
 }
 
@@ -101,21 +104,44 @@ TEST(PassOptions, EachPassHasItsIterations) {
             std::string::npos);
 }
 
-TEST(PassOptions, OnlyAPhotometricPassBeforeAnotherHasASparserWindow) {
-  const auto step = [](const PatchMatchOptions& options, Pass pass) {
-    return EngineOptions(PassOptions(options, pass)).window_step;
-  };
+TEST(PassOptions, LaterLevelsDoLessAndChangeLess) {
   PatchMatchOptions options;
-  EXPECT_EQ(step(options, Pass::kPhotometric), 2);
-  EXPECT_EQ(step(options, Pass::kGeometric), 1);
-  options.first_window_step = 1;
-  EXPECT_EQ(step(options, Pass::kPhotometric), 1);
-  options.window_step = 2;
-  EXPECT_EQ(step(options, Pass::kPhotometric), 2);
-  EXPECT_EQ(step(options, Pass::kGeometric), 2);
-  options = PatchMatchOptions();
-  options.geom_consistency = false;
-  EXPECT_EQ(step(options, Pass::kPhotometric), 1);
+  options.num_iterations = 7;
+  options.num_fine_iterations = 3;
+  options.num_geom_iterations = 2;
+  options.fine_perturbation = 0.1;
+  options.geom_perturbation = 0.2;
+  const auto expect = [&](Pass pass, int level, int iterations,
+                          double perturbation, bool filters) {
+    const PatchMatchOptions result = PassOptions(options, pass, level, 3);
+    EXPECT_EQ(result.num_iterations, iterations) << level;
+    EXPECT_EQ(result.first_perturbation, perturbation) << level;
+    EXPECT_EQ(result.filter, filters) << level;
+    EXPECT_EQ(result.num_levels, 3);
+    EXPECT_EQ(result.geom_consistency, pass == Pass::kGeometric);
+  };
+  expect(Pass::kPhotometric, 2, 7, 1, false);
+  expect(Pass::kGeometric, 2, 2, 0.2, false);
+  for (const int level : {1, 0}) {
+    expect(Pass::kPhotometric, level, 3, 0.1, false);
+    expect(Pass::kGeometric, level, 2, 0.1, level == 0);
+  }
+  // Upper bounds.
+  options.num_iterations = 1;
+  options.first_perturbation = 0.05;
+  expect(Pass::kPhotometric, 2, 1, 0.05, false);
+  expect(Pass::kPhotometric, 1, 1, 0.05, false);
+  expect(Pass::kGeometric, 2, 1, 0.05, false);
+}
+
+TEST(NumLevels, FollowsTheImagesUnlessItIsGiven) {
+  PatchMatchOptions options;
+  EXPECT_EQ(NumLevels(options, 540), 2);
+  EXPECT_EQ(NumLevels(options, 6000), 5);
+  options.num_levels = 3;
+  EXPECT_EQ(NumLevels(options, 540), 3);
+  options.colmap_defaults = true;
+  EXPECT_EQ(NumLevels(options, 6000), 1);
 }
 
 TEST(PassOptions, ColmapDefaultsTakeTheirPlace) {
@@ -127,6 +153,9 @@ TEST(PassOptions, ColmapDefaultsTakeTheirPlace) {
     EXPECT_EQ(result.num_iterations, 5);
     EXPECT_EQ(result.num_samples, 15);
     EXPECT_EQ(result.window_step, 1);
+    EXPECT_EQ(result.first_perturbation, 1);
+    EXPECT_TRUE(result.search.try_all);
+    EXPECT_EQ(result.search.hysteresis, 0);
   }
 }
 
@@ -190,11 +219,13 @@ TEST(ViewSeed, DependsOnAllItIsGiven) {
   for (const uint64_t seed : {0, 1}) {
     for (const char* name : {"a.jpg", "b.jpg", "ab.jpg"}) {
       for (const Pass pass : {Pass::kPhotometric, Pass::kGeometric}) {
-        seeds.insert(ViewSeed(seed, name, pass));
+        for (const int level : {0, 1, 2}) {
+          seeds.insert(ViewSeed(seed, name, pass, level));
+        }
       }
     }
   }
-  EXPECT_EQ(seeds.size(), 12);
+  EXPECT_EQ(seeds.size(), 36);
   EXPECT_EQ(ViewSeed(1, "a.jpg", Pass::kGeometric),
             ViewSeed(1, "a.jpg", Pass::kGeometric));
 }

@@ -53,11 +53,15 @@ TEST(OptionsOfMaps, HasWhatChangesMaps) {
                            "filter_min_num_consistent",
                            "filter_geom_consistency_max_cost",
                            "seed",
+                           "num_levels",
+                           "first_perturbation",
+                           "try_all",
+                           "hysteresis",
                            "tapa",
                            "rays"}) {
     EXPECT_EQ(values.count(name), 1) << name;
   }
-  EXPECT_EQ(values.size(), 22) << "Is an option missing in the list above?";
+  EXPECT_EQ(values.size(), 26) << "Is an option missing in the list above?";
 }
 
 TEST(OptionsOfMaps, LeavesOutWhatNothingReads) {
@@ -115,18 +119,18 @@ TEST(OptionsOfMaps, ADefaultInSinglePrecisionIsWhatItStandsFor) {
 }
 
 TEST(DescribeDifferences, APassBeforeTheGeometricOneIsNotAFinalOne) {
-  PatchMatchOptions final_pass;
-  final_pass.geom_consistency = false;
+  PatchMatchOptions alone;
+  alone.geom_consistency = false;
   PatchMatchOptions options;
-  options.first_window_step = 1;
-  EXPECT_EQ(DifferenceOf(final_pass, PassOptions(options, Pass::kPhotometric)),
-            "filter was 1, is 0");
-  final_pass.filter = false;
-  EXPECT_EQ(DifferenceOf(final_pass, PassOptions(options, Pass::kPhotometric)),
-            "");
-  options.tapa.enabled = final_pass.tapa.enabled = true;
-  EXPECT_EQ(DifferenceOf(final_pass, PassOptions(options, Pass::kPhotometric)),
-            "tapa_refinement was 1, is 0");
+  const auto difference = [&] {
+    return DifferenceOf(PassOptions(alone, Pass::kPhotometric),
+                        PassOptions(options, Pass::kPhotometric));
+  };
+  EXPECT_EQ(difference(), "filter was 1, is 0");
+  alone.filter = false;
+  EXPECT_EQ(difference(), "");
+  options.tapa.enabled = alone.tapa.enabled = true;
+  EXPECT_EQ(difference(), "tapa_refinement was 1, is 0");
 }
 
 TEST(DescribeDifferences, NamesTheSwitchRatherThanWhatFollows) {

@@ -153,7 +153,7 @@ TEST(CudaBackend, GoesOnBesideSmallerProblems) {
   const auto sweep = [&](Backend* backend, const SyntheticPlane& scene) {
     const Start start = StartNearTruth(scene);
     backend->SetEstimate(start.depth, start.normal, keep_going);
-    backend->Sweep(Schedule(options, scene.problem().sources.size()).At(0),
+    backend->Sweep(Schedule(options, scene.problem().sources.size(), true).At(0),
                    keep_going);
   };
   const auto first = MakeCudaBackend(options, large.problem());

@@ -68,7 +68,8 @@ bool KeepGoing(double) { return true; }
 // The first sweeps; the last of several checks consistency.
 Estimate RunSweeps(Backend* backend, const Options& options,
                    const Problem& problem, const Start& start, int num_sweeps) {
-  const Schedule schedule(options, static_cast<int>(problem.sources.size()));
+  const Schedule schedule(options, static_cast<int>(problem.sources.size()),
+                          /* has_start */ true);
   backend->SetEstimate(start.depth, start.normal, KeepGoing);
   for (int i = 0; i < num_sweeps; ++i) {
     SweepParams params = schedule.At(i);
@@ -83,7 +84,8 @@ std::vector<uint16_t> CostsAfterSweep(BackendForTesting* backend,
                                       const Options& options,
                                       const Problem& problem,
                                       const Start& start) {
-  const Schedule schedule(options, static_cast<int>(problem.sources.size()));
+  const Schedule schedule(options, static_cast<int>(problem.sources.size()),
+                          /* has_start */ true);
   backend->SetEstimate(start.depth, start.normal, KeepGoing);
   backend->Sweep(schedule.At(0), KeepGoing);
   return backend->Costs();
@@ -242,7 +244,7 @@ TEST_F(CudaDeviceTest, StopsSoon) {
   const Start start = StartNearTruth(scene);
   backend->SetEstimate(start.depth, start.normal, KeepGoing);
   int num_calls = 0;
-  EXPECT_FALSE(backend->Sweep(Schedule(options, 6).At(0), [&](double) {
+  EXPECT_FALSE(backend->Sweep(Schedule(options, 6, true).At(0), [&](double) {
     ++num_calls;
     return false;
   }));

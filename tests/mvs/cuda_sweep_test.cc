@@ -55,7 +55,7 @@ struct CudaScene {
     options.num_iterations = 5;
     options.seed = 11;
     options.tapa.enabled = c.guided || c.filter;
-    params = Schedule(options, c.num_sources).At(c.index);
+    params = Schedule(options, c.num_sources, true).At(c.index);
     params.check_consistency = c.filter;
     params.filter_min_prob = params.selection.Emission(0.9f);
     params.filter_cos_min_triangulation = std::cos(0.05f);

@@ -85,10 +85,16 @@ double Bilinear(const Map<uint8_t>& image, double x, double y) {
                fx * Pixel(image, row + 1, col + 1));
 }
 
-}  // namespace
+// Sums over the window around a reference pixel, with its bilateral weights: of
+// reference and source intensities, 0 to 1.
+struct WindowSums {
+  double var_r;
+  double var_s;
+  double covariance;
+};
 
-double PhotometricCost(const Options& options, const Problem& problem, int row,
-                       int col, const DepthNormal& plane, int m) {
+WindowSums SumWindow(const Options& options, const Problem& problem, int row,
+                     int col, const DepthNormal& plane, int m) {
   const Map<uint8_t>& ref = *problem.reference.image;
   const Matrix3d H = Homography(problem, row, col, plane, m);
   const int r = options.window_radius;
@@ -97,6 +103,11 @@ double PhotometricCost(const Options& options, const Problem& problem, int row,
   double sum_w = 0, sum_r = 0, sum_s = 0, sum_rr = 0, sum_ss = 0, sum_rs = 0;
   for (int dy = -r; dy <= r; dy += options.window_step) {
     for (int dx = -r; dx <= r; dx += options.window_step) {
+      // Sparse windows of at least four rows are without their corners.
+      if (options.window_step == 2 && r >= 3 && std::abs(dx) == r &&
+          std::abs(dy) == r) {
+        continue;
+      }
       const double reference = Pixel(ref, row + dy, col + dx);
       const double difference = reference - Pixel(ref, row, col);
       const double w =
@@ -117,13 +128,20 @@ double PhotometricCost(const Options& options, const Problem& problem, int row,
   }
   const double mean_r = sum_r / sum_w;
   const double mean_s = sum_s / sum_w;
-  const double var_r = sum_rr / sum_w - mean_r * mean_r;
-  const double var_s = sum_ss / sum_w - mean_s * mean_s;
-  if (var_r < 1e-5 || var_s < 1e-5) {
+  return {sum_rr / sum_w - mean_r * mean_r, sum_ss / sum_w - mean_s * mean_s,
+          sum_rs / sum_w - mean_r * mean_s};
+}
+
+}  // namespace
+
+double PhotometricCost(const Options& options, const Problem& problem, int row,
+                       int col, const DepthNormal& plane, int m) {
+  const WindowSums sums = SumWindow(options, problem, row, col, plane, m);
+  if (sums.var_r < 1e-5 || sums.var_s < 1e-5) {
     return 2;
   }
-  const double covariance = sum_rs / sum_w - mean_r * mean_s;
-  return std::clamp(1 - covariance / std::sqrt(var_r * var_s), 0.0, 2.0);
+  return std::clamp(1 - sums.covariance / std::sqrt(sums.var_r * sums.var_s),
+                    0.0, 2.0);
 }
 
 double GeometricCost(const Options& options, const Problem& problem, int row,
@@ -293,6 +311,11 @@ Vec3 PerturbedNormal(const Random& random, double perturbation,
   return normal;
 }
 
+bool IsSame(const DepthNormal& a, const DepthNormal& b) {
+  return std::abs(a.depth - b.depth) <= 1e-5f * b.depth &&
+         (ToEigen(a.normal) - ToEigen(b.normal)).norm() <= 1e-3;
+}
+
 std::vector<int> DrawViews(const Options& options, const Random& random,
                            const std::vector<double>& weights) {
   double sum = 0;
@@ -341,7 +364,9 @@ void Sweep(const Options& options, const Problem& problem,
   const int width = state->depth.width();
   const int direction = index % 4;
   const int num_lines = direction % 2 == 0 ? width : state->depth.height();
-  const double perturbation = std::pow(2.0, -(index / 4 + direction / 4.0));
+  const double perturbation =
+      options.first_perturbation *
+      std::pow(2.0, -(index / 4 + direction / 4.0));
   const double previous_weight =
       static_cast<double>(index) / (4 * options.num_iterations);
   for (int line = 0; line < num_lines; ++line) {
@@ -414,9 +439,17 @@ void Sweep(const Options& options, const Problem& problem,
         minus = MinusWeight(t, guide.weight_range);
       }
 
+      // Of the three random ones, at 2, 3 and 4.
+      const size_t only_random =
+          2 + static_cast<size_t>(3 * random.Uniform(kDrawHypothesis));
       size_t best = 0;
       double best_cost = std::numeric_limits<double>::infinity();
       for (size_t k = 0; k < planes.size(); ++k) {
+        if (!options.search.try_all &&
+            ((k >= 2 && k <= 4 && k != only_random) ||
+             (k == 1 && IsSame(planes[1], current)))) {
+          continue;
+        }
         if (k > 0 && (!(planes[k].depth > 0) ||
                       !(ToEigen(planes[k].normal).dot(ray) < 0))) {
           continue;
@@ -436,6 +469,13 @@ void Sweep(const Options& options, const Problem& problem,
           }
         }
         // The engine adds up in single precision: ties are equal to that.
+        if (k > 0 && k < kFirstPlanar) {
+          // The estimate has to be beaten clearly where there is no texture.
+          const double variance =
+              SumWindow(options, problem, row, col, current, 0).var_r;
+          cost += options.search.hysteresis * options.num_samples *
+                  std::pow(0.00005 / (0.00005 + variance), 2);
+        }
         if (cost <= best_cost + 1e-9) {
           best = k;
           best_cost = cost;

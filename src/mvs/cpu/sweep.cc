@@ -28,6 +28,8 @@ class Sources {
   Sources(const ProblemData& data, const Patch& patch, uint8_t* mask)
       : data_(data), patch_(patch), mask_(mask) {}
 
+  float PatchVariance() const { return patch_.variance; }
+
   float Cost(int m, const Warp& warp) const {
     return CorrelationCost(data_.window, patch_, data_.sources[m], warp);
   }

@@ -40,9 +40,9 @@ TAPA_INLINE PatchStatistics LoadPatch(const WindowShape& window,
     const int dy = i / stride * window.step - window.radius;
     const float intensity = textures.Reference(col + dx, row + dy);
     const float difference = intensity - center;
-    // What pads a row has no weight.
+    // What pads a row has no weight, and what the window is without.
     const float weight =
-        x < row_samples
+        x < row_samples && window.Contains(dx, dy)
             ? ExpNegative(window.color_scale * difference * difference +
                           window.spatial_scale * (dx * dx + dy * dy))
             : 0.0f;
@@ -124,6 +124,8 @@ class PixelSources {
         samples_(samples),
         patch_(patch),
         consistent_(consistent) {}
+
+  TAPA_INLINE float PatchVariance() const { return patch_.variance; }
 
   TAPA_INLINE float Cost(int m, const Warp& image_warp) const {
     if (!(patch_.variance >= kMinVariance)) {

@@ -107,6 +107,24 @@ TAPA_INLINE bool IsVisible(const DepthNormal& hypothesis, const Vec3& ray) {
   return hypothesis.depth > 0.0f && Dot(hypothesis.normal, ray) < 0.0f;
 }
 
+// Whether a pixel tries one of the random hypotheses in this sweep: all, or one
+// that is drawn.
+TAPA_INLINE bool TriesRandom(const PixelContext& p, int hypothesis) {
+  return p.params.try_all ||
+         hypothesis ==
+             kRandom + static_cast<int>(3 * p.random.Uniform(kDrawHypothesis));
+}
+
+// Whether two estimates of a pixel are the same but for errors of rounding:
+// within a window they differ by a few thousandths of a pixel.
+TAPA_INLINE bool IsSame(const DepthNormal& a, const DepthNormal& b) {
+  constexpr float kMaxDepthChange = 3e-4f;
+  constexpr float kMaxNormalChange = 3e-2f;
+  const Vec3 difference = a.normal - b.normal;
+  return fabsf(a.depth - b.depth) <= kMaxDepthChange * b.depth &&
+         Dot(difference, difference) <= kMaxNormalChange * kMaxNormalChange;
+}
+
 // All hypotheses. What is none is not visible.
 TAPA_INLINE void MakeHypotheses(const PixelContext& p,
                                 const PreviousPixel& previous,
@@ -116,12 +134,22 @@ TAPA_INLINE void MakeHypotheses(const PixelContext& p,
   const Vec3 random_normal =
       PerturbNormal(p.random, p.params.perturbation, p.current.normal, p.ray);
   hypotheses[kCurrent] = p.current;
-  hypotheses[kPropagated] = {
-      PropagateDepth(previous.estimate, previous.ray, p.ray),
-      previous.estimate.normal};
-  hypotheses[kRandom] = {random_depth, random_normal};
-  hypotheses[kRandomNormal] = {p.current.depth, random_normal};
-  hypotheses[kRandomDepth] = {random_depth, p.current.normal};
+  DepthNormal& propagated = hypotheses[kPropagated];
+  propagated = {PropagateDepth(previous.estimate, previous.ray, p.ray),
+                previous.estimate.normal};
+  if (!p.params.try_all && IsSame(propagated, p.current)) {
+    propagated = DepthNormal();
+  }
+  // A normal of zero faces nobody: such a hypothesis only lends its depth.
+  const bool both = TriesRandom(p, kRandom);
+  const bool depth_alone = TriesRandom(p, kRandomDepth);
+  hypotheses[kRandom] = {both || depth_alone ? random_depth : 0.0f,
+                         both ? random_normal : Vec3()};
+  hypotheses[kRandomNormal] = {
+      p.current.depth,
+      TriesRandom(p, kRandomNormal) ? random_normal : Vec3()};
+  hypotheses[kRandomDepth] = {random_depth,
+                              depth_alone ? p.current.normal : Vec3()};
   hypotheses[kFinePlane] = p.guide.fine;
   hypotheses[kCoarsePlane] = p.guide.coarse;
 }

@@ -106,6 +106,23 @@ TAPA_INLINE CostWeights WeightsOf(const TextureWeights& weights,
           own ? weights.own.geometric : weights.planar.geometric};
 }
 
+// What a hypothesis costs more than the current estimate, in the sum over all
+// draws, so that it wins only if it is clearly better. Where there is little
+// texture noise decides between hypotheses of nearly the same cost: what a
+// coarser level or another pass has seen there better shall not be lost to it.
+// Not so for planes from outside, which are made for such places. variance: that
+// of the reference patch's intensities (0 to 255).
+TAPA_INLINE float Hysteresis(const SweepParams& params, int hypothesis,
+                             float variance) {
+  // As TapaOptions::textureness_variance.
+  constexpr float kLittleTexture = 0.00005f * 255.0f * 255.0f;
+  if (hypothesis >= kFinePlane) {
+    return 0.0f;
+  }
+  const float share = kLittleTexture / (kLittleTexture + variance);
+  return params.hysteresis * params.num_samples * share * share;
+}
+
 // Adds up, in the scratch's `sum`, the costs of hypotheses [first, last) over
 // the drawn views. Costs are not negative, so a sum only grows: once it exceeds
 // `limit` the hypothesis cannot win any more, and the rest of its views is not
@@ -114,11 +131,13 @@ template <class Lanes, class Sources>
 TAPA_INLINE void SumCosts(const PixelContext& p, Sources& sources, int first,
                           int last, float limit, int num_distinct) {
   const PixelScratch& s = p.scratch;
+  const float variance = sources.PatchVariance();
   for (int i = first + Lanes::First(); i < last; i += Lanes::Step()) {
     s.homography[i] = HomographyVector(p.camera, s.hypothesis[i], p.ray);
     s.sum[i] = IsVisible(s.hypothesis[i], p.ray)
-                   ? SumGeometricCosts(p, WeightsOf(p.guide.weights, i), i,
-                                       num_distinct)
+                   ? Hysteresis(p.params, i, variance) +
+                         SumGeometricCosts(p, WeightsOf(p.guide.weights, i), i,
+                                           num_distinct)
                    : INFINITY;
   }
   int begin = 0;

@@ -41,6 +41,7 @@ enum Draw : uint32_t {
   kDrawDepth = 0,
   // Up to kMaxNormalTrials trials of three numbers.
   kDrawNormal = 1,
+  kDrawHypothesis = 60,
   // One for every sampled source view.
   kDrawSample = 64,
 };

@@ -19,7 +19,12 @@ struct SweepParams {
   float perturbation = 1;
   // Weight of the selection probability of the sweep before, 0 to 1.
   float prev_prob_weight = 0;
-  int num_samples = 8;
+  int num_samples = 4;
+  // As in SearchOptions.
+  bool try_all = false;
+  // By how much the cost per drawn view must fall before an estimate without
+  // any texture is given up, see Hysteresis.
+  float hysteresis = 0;
   // Half size of the correlation window, in pixels.
   float window_radius = 5;
   ViewSelection selection;

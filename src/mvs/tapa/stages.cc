@@ -64,12 +64,12 @@ TapaStages::TapaStages(const Options& options, const Problem& problem,
   }
 }
 
-void TapaStages::Begin(Backend* backend) {
+void TapaStages::Begin(bool has_start, Backend* backend) {
   if (options_.tapa.texture_weighting) {
     backend->SetTextureness(record_.textureness);
   }
-  // The photometric pass starts from noise.
-  if (options_.geom_consistency) {
+  // Not from noise.
+  if (has_start) {
     ProposePlanes(0, backend);
   }
 }

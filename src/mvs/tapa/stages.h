@@ -43,8 +43,8 @@ class TapaStages {
   TapaStages(const Options& options, const Problem& problem,
              const Control& control);
 
-  // Before the first sweep: weights, and in the geometric pass planes.
-  void Begin(Backend* backend);
+  // Before the first sweep: weights and, if it starts from given maps, planes.
+  void Begin(bool has_start, Backend* backend);
 
   // Between two iterations: planes fitted to the estimate.
   void ProposePlanes(int iteration, Backend* backend);
