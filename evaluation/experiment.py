@@ -10,7 +10,7 @@ import pydantic
 
 from . import (cloud_scores, depth_maps, depth_scans, depth_scores, links, machine, processes,
                record, schemas, stereo_run)
-from .methods import METHODS
+from .methods import METHODS, check_method
 from .processes import Failure
 from .schemas import Positive, Text
 from .steps import Job, Step
@@ -18,13 +18,6 @@ from .steps import Job, Step
 Whole = pydantic.conint(strict=True, ge=0)
 Count = pydantic.conint(strict=True, ge=1)
 Tolerances = pydantic.conlist(Positive, min_items=1)
-
-
-def check_method(name):
-    """The name of a method. Raises ValueError if there is none."""
-    if name not in METHODS:
-        raise ValueError(f"there is no method {name}; there are " + ", ".join(METHODS))
-    return name
 
 
 def methods_validator():

@@ -45,6 +45,15 @@ METHODS = {
     "paper-refinement": _PAPER + _without("refinement"),
 }
 
+
+
+def check_method(name):
+    """The name of a method. Raises ValueError if there is none."""
+    if name not in METHODS:
+        raise ValueError(f"there is no method {name}; there are " + ", ".join(METHODS))
+    return name
+
+
 # What a reader sees.
 LABELS = {
     "plain": "plain",

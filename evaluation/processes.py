@@ -11,6 +11,7 @@ import time
 
 class Failure(Exception):
     """Something went wrong. Its text is one line for the user."""
+    exit_status = 1
 
 
 class Interrupted(Exception):

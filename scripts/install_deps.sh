@@ -9,6 +9,7 @@ packages=(
   g++ cmake ninja-build ccache git python3 python3-venv ca-certificates
   # Scores and reports.
   curl p7zip-full python3-matplotlib python3-numpy python3-opencv python3-pydantic
+  python3-scipy
   # COLMAP.
   libboost-filesystem-dev libboost-graph-dev libboost-program-options-dev
   libboost-system-dev libboost-test-dev libceres-dev libcgal-dev libeigen3-dev

@@ -1,0 +1,79 @@
+#!/usr/bin/python3
+"""Time and memory that scores of point clouds take.
+
+    benchmarks/point_cloud_benchmark.py [RECONSTRUCTED SCANNED [PROGRAM]]
+
+Prints a line of docs/evaluation.md's table for so many points (1000000 and 2000000). PROGRAM
+is another one with the options of scripts/evaluate_point_cloud.
+
+The scene is a hall of 10 x 10 x 5 m with two scanners, which turn like the instruments do, and a
+reconstruction of what they measured: most points within a centimetre or two, some anywhere, in
+no order, which is the worst case for the caches.
+"""
+
+import multiprocessing
+import os
+import sys
+import tempfile
+
+import numpy as np
+
+ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+sys.path.insert(0, ROOT)
+from evaluation import meshlab_project, point_clouds, processes  # noqa: E402
+
+
+def scan_hall(position, count):
+    """What a scanner at a position measures, in its frame."""
+    rows = int(np.sqrt(count / 2))
+    azimuth = np.repeat(np.arange(2 * rows) * np.pi / rows, rows)
+    inclination = np.tile((np.arange(rows) + 0.5) * np.pi / rows, 2 * rows)
+    rays = np.stack((np.sin(inclination) * np.cos(azimuth),
+                     np.sin(inclination) * np.sin(azimuth), np.cos(inclination)), axis=1)
+    with np.errstate(divide="ignore"):
+        to_walls = (np.copysign((5, 5, 2.5), rays) - position) / rays
+    return (rays * to_walls.min(axis=1)[:, None]).astype(np.float32)
+
+
+def reconstruct_hall(scanned, count, random):
+    points = scanned[random.integers(0, len(scanned), count)]
+    points += random.normal(0, 0.01, points.shape).astype(np.float32)
+    points[::20] = random.uniform(-1, 1, points[::20].shape) * (5, 5, 2.5)
+    return points
+
+
+def make_scene(num_reconstructed, num_scanned, reconstruction, project):
+    scans, scanned = [], []
+    for x in (-2, 2):
+        pose = np.eye(4)
+        pose[:3, 3] = x, 1, 0
+        points = scan_hall(pose[:3, 3], num_scanned // 2)
+        scans.append((f"scan{len(scans) + 1}.ply", pose))
+        point_clouds.write_ply(os.path.join(os.path.dirname(project), scans[-1][0]), points)
+        scanned.append(points + pose[:3, 3].astype(np.float32))
+    meshlab_project.write(project, scans)
+    point_clouds.write_ply(reconstruction, reconstruct_hall(
+        np.concatenate(scanned), num_reconstructed, np.random.default_rng(1)))
+
+
+def main(num_reconstructed=1000000, num_scanned=2000000,
+         program=os.path.join(ROOT, "scripts", "evaluate_point_cloud")):
+    counts = int(num_reconstructed), int(num_scanned)
+    with tempfile.TemporaryDirectory() as folder:
+        reconstruction, project, log = (os.path.join(folder, name)
+                                        for name in ("fused.ply", "scans.mlp", "log"))
+        # In a process of its own, as a program counts the memory of the one that starts it.
+        maker = multiprocessing.Process(target=make_scene, args=(*counts, reconstruction, project))
+        maker.start()
+        maker.join()
+        usage = processes.run([program, "--reconstruction_ply_path", reconstruction,
+                               "--ground_truth_mlp_path", project,
+                               "--tolerances", "0.01,0.02,0.05,0.1,0.2,0.5"], log)
+        print("\n".join(processes.last_output(log)[-4:]))
+    print(f"| {counts[0] / 1e6:g} million | {counts[1] / 1e6:g} million | "
+          f"{usage.peak_memory_bytes / 1e6:.0f} MB | {usage.cpu_seconds:.1f} s | "
+          f"{usage.seconds:.1f} s |")
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
