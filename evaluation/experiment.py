@@ -8,8 +8,8 @@ from typing import List, Optional, Tuple
 
 import pydantic
 
-from . import (cloud_scores, depth_maps, depth_scans, depth_scores, links, machine, processes,
-               record, schemas, stereo_run)
+from . import (cloud_scores, depth_maps, depth_scans, depth_scores, machine, processes, record,
+               schemas, stereo_run, workspaces)
 from .methods import METHODS, check_method
 from .processes import Failure
 from .schemas import Positive, Text
@@ -100,7 +100,7 @@ def check(experiment):
     if not (os.path.isdir(truth) or experiment.scans()):
         raise Failure(f"{data} has neither gt_depth/ nor a MeshLab project in scans/, so that "
                       "nothing can be scored")
-    photographs = links.photographs(data, experiment.every)
+    photographs = workspaces.photographs(data, experiment.every)
     if len(photographs) < 2:
         raise Failure(f"{data}/images has fewer than two photographs to use")
     if os.path.isdir(truth) and not any(depth_maps.find(truth, name) for name in photographs):
@@ -166,7 +166,7 @@ class LinkComparison(Step):
         return [f"# {self._folder}: links to {path}" for path in self._paths]
 
     def run(self):
-        photographs = links.photographs(self._experiment.data, self._experiment.every)
+        photographs = workspaces.photographs(self._experiment.data, self._experiment.every)
         known = record.load(self._folder)
         if isinstance(known, record.RunRecord):
             raise Failure(f"{self._folder} has results of this program, which are no links to "
@@ -180,10 +180,10 @@ class LinkComparison(Step):
             options=[], compare=self._paths, photographs=len(photographs))
         for path in self._paths:
             if os.path.isdir(path):
-                links.make_view_workspace(self._experiment.data, path, self._folder, photographs)
+                workspaces.make_view_workspace(self._experiment.data, path, self._folder, photographs)
                 content.views, content.image_size = stereo_run.describe_maps(self._folder)
             else:
-                links.link(path, os.path.join(self._folder, "fused.ply"))
+                workspaces.link(path, os.path.join(self._folder, "fused.ply"))
         record.save(self._folder, content)
 
 

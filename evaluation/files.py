@@ -25,6 +25,15 @@ def replacing(path):
         raise Failure(f"{path} cannot be written: {error.strerror}") from error
 
 
+def read_bytes(path):
+    """All of a file. Raises Failure if it cannot be read."""
+    try:
+        with open(path, "rb") as file:
+            return file.read()
+    except OSError as error:
+        raise Failure(f"{path} cannot be read: {error.strerror}") from error
+
+
 def write_bytes(path, *parts):
     """Writes the parts one after the other. Raises Failure if it cannot."""
     with replacing(path) as new, open(new, "wb") as file:

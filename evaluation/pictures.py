@@ -20,10 +20,10 @@ def _draw_view(data, maps, name, bin_dir):
     folder = os.path.join(maps, "pictures")
     picture = os.path.splitext(name)[0] + ".png"
     path = os.path.join(folder, picture)
-    if not files.is_newer(path, links.find_map(maps, name), depth_maps.find(truth, name)):
+    if not files.is_newer(path, workspaces.find_map(maps, name), depth_maps.find(truth, name)):
         workspace = os.path.join(folder, "workspace")
         shutil.rmtree(workspace, ignore_errors=True)
-        links.make_view_workspace(data, maps, workspace, [name])
+        workspaces.make_view_workspace(data, maps, workspace, [name])
         command = [machine.find_program(bin_dir or machine.default_bin_dir(),
                                         "evaluate_depth_maps"),
                    "--workspace_path", workspace, "--pictures", os.path.join(workspace, "new")]
@@ -68,7 +68,7 @@ def draw_comparison(output, data, by_method, methods, view, bin_dir=None):
     Returns the caption, None if no method has maps of this view.
     """
     folders = {method: run.folder for method in chosen_methods(methods)
-               for run in by_method.get(method, [])[:1] if links.find_map(run.folder, view)}
+               for run in by_method.get(method, [])[:1] if workspaces.find_map(run.folder, view)}
     if not folders:
         return None
     titles = [label(method) for method in folders]
@@ -87,6 +87,6 @@ def chosen_methods(methods):
 
 def choose_views(data, every, count):
     """Names of count photographs, spread evenly over those that take part."""
-    names = links.photographs(data, every)
+    names = workspaces.photographs(data, every)
     count = min(count, len(names))
     return [names[(2 * i + 1) * len(names) // (2 * count)] for i in range(count)]

@@ -2,7 +2,7 @@
 
 import os
 
-from .. import figures, files, links, report, results
+from .. import figures, files, report, results, workspaces
 from ..experiment import Experiment
 from ..methods import ABLATION, TAPA_ABLATION
 from . import paper_tables, published
@@ -124,7 +124,7 @@ class Eth3dReport:
     def _write_scene(self, scene):
         """Writes the page of a scene. Returns its name and what is missing."""
         data = os.path.join(self._sets, scene.set_name)
-        views = links.photographs(data)
+        views = workspaces.photographs(data)
         shown = report.SetReport(
             Experiment(name=scene.set_name, data=data, methods=self._methods,
                        seeds=list(self._seeds), options=None,

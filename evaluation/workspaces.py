@@ -1,11 +1,36 @@
-"""Workspaces of links: some maps of a workspace, or those of another tool."""
+"""COLMAP's dense workspaces, and such of links to some maps or to those of another tool."""
 
 import os
+from typing import NamedTuple
 
 from . import files
 from .processes import Failure
 
 _KINDS = (".geometric", ".photometric", "")
+
+
+class View(NamedTuple):
+    """A view with a depth map. name: of the photograph; other files may not be there."""
+    name: str
+    photograph: str
+    depth: str
+    normals: str
+
+
+def list_views(workspace, input_type):
+    """Views with a map of a type, geometric or photometric, in the order of their names."""
+    maps = os.path.join(workspace, "stereo", "depth_maps")
+    for what, folder in (("workspace", workspace), ("folder of depth maps", maps)):
+        if not os.path.isdir(folder):
+            raise Failure(f"no {what} at {folder}")
+    end = f".{input_type}.bin"
+    names = [name.removesuffix(end) for name in files.names_below(maps)
+             if name.endswith(end) and name != end]
+    if not names:
+        raise Failure(f"no {input_type} depth map in {maps}")
+    return [View(name, os.path.join(workspace, "images", name), os.path.join(maps, name + end),
+                 os.path.join(workspace, "stereo", "normal_maps", name + end))
+            for name in sorted(names)]
 
 
 def photographs(data, every=1):
