@@ -5,12 +5,12 @@ import os
 from . import command_line, depth_maps, files, workspaces
 from .depth_map_score import Tolerance
 from .processes import Failure
-from .texts import percent
 from .textureness import MIN_TEXTURENESS
 from .workspace_score import WorkspaceScorer
 
 
-def _parse(words):
+def parse(words=None):
+    """Options from words, or of the command line."""
     parser = command_line.Parser(prog="evaluate_depth_maps", description=__doc__)
     add = parser.add_argument
     add("--workspace_path", required=True, help="dense workspace of COLMAP")
@@ -68,16 +68,8 @@ def _print_remarks(overall, num_maps, num_truth):
            "estimate")
 
 
-def _draw(view, depth, truth, score, folder):
-    from . import view_picture  # Takes a second.
-    notes = score and [f"coverage {percent(score.coverage)} %",
-                       f"median error {percent(score.median_relative_error, 2)} %"]
-    view_picture.draw(os.path.join(folder, os.path.splitext(view.name)[0] + ".png"), view,
-                      depth, truth, notes or [])
-
-
-def main(words=None):
-    arguments = _parse(words)
+def evaluate(arguments):
+    """Prints scores and draws pictures. Returns all scores, None where there is no truth."""
     truth_folder = arguments.ground_truth_path
     views = workspaces.list_views(arguments.workspace_path, arguments.input_type)
     num_truth = _count_truth(truth_folder) if truth_folder else 0
@@ -90,17 +82,25 @@ def main(words=None):
             continue
         depth = depth_maps.read_map(view.depth)
         truth = depth_maps.read(path, arguments.depth_scale) if path else None
-        score = scorer.add(view, depth, truth) if path else None
+        if path:
+            scorer.add(view, depth, truth)
         if arguments.pictures:
-            _draw(view, depth, truth, score, arguments.pictures)
+            from . import view_picture  # Takes a second.
+            picture = os.path.splitext(view.name)[0] + ".png"
+            view_picture.draw(os.path.join(arguments.pictures, picture), view, depth, truth)
     if not truth_folder:
-        return 0
+        return None
     if not scorer.scores:
         raise Failure(f"no ground truth in {truth_folder} has the name of a depth map")
     print(scorer.text(), end="")
     _print_remarks(scorer.overall(), len(views), num_truth)
+    return {**scorer.json(), "workspace_path": arguments.workspace_path,
+            "ground_truth_path": truth_folder, "input_type": arguments.input_type}
+
+
+def main(words=None):
+    arguments = parse(words)
+    scores = evaluate(arguments)
     if arguments.json:
-        files.write_json(arguments.json, {
-            **scorer.json(), "workspace_path": arguments.workspace_path,
-            "ground_truth_path": truth_folder, "input_type": arguments.input_type})
+        files.write_json(arguments.json, scores)
     return 0

@@ -200,7 +200,7 @@ def jobs(experiment, out, bin_dir, evaluator=None):
         if has_maps and os.path.isdir(experiment.truth()):
             steps.append(depth_scores.ScoreDepth(
                 folder, experiment.truth(), experiment.tolerances,
-                experiment.relative_tolerances, bin_dir))
+                experiment.relative_tolerances))
         if evaluator is not None:
             steps += [cloud_scores.ScoreCloud(folder, name, scans, evaluator,
                                               experiment.tolerances, options) for name in clouds]

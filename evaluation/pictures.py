@@ -1,38 +1,24 @@
 """Pictures of views: photograph, depth, normals, measured depth and error."""
 
 import os
-import shutil
 
-from . import depth_maps, files, links, machine, processes
+from . import depth_maps, files, view_picture, workspaces
 from .methods import METHODS, label
 
 _WIDTH = 800
 _QUALITY = 75
 
 
-def _draw_view(data, maps, name, bin_dir):
-    """Draws a view with evaluate_depth_maps into MAPS/pictures. Returns its path.
+def _draw_view(data, maps, view):
+    """Draws a view of the workspace MAPS into MAPS/pictures. Returns its path.
 
-    maps: the workspace whose maps are drawn. A picture that is newer than what
-    it shows is kept.
+    A picture that is newer than what it shows is kept.
     """
-    truth = os.path.join(data, "gt_depth")
-    folder = os.path.join(maps, "pictures")
-    picture = os.path.splitext(name)[0] + ".png"
-    path = os.path.join(folder, picture)
-    if not files.is_newer(path, workspaces.find_map(maps, name), depth_maps.find(truth, name)):
-        workspace = os.path.join(folder, "workspace")
-        shutil.rmtree(workspace, ignore_errors=True)
-        workspaces.make_view_workspace(data, maps, workspace, [name])
-        command = [machine.find_program(bin_dir or machine.default_bin_dir(),
-                                        "evaluate_depth_maps"),
-                   "--workspace_path", workspace, "--pictures", os.path.join(workspace, "new")]
-        if os.path.isdir(truth):
-            command += ["--ground_truth_path", truth]
-        processes.run(command, os.path.join(folder, "pictures.log"))
-        os.makedirs(os.path.dirname(path), exist_ok=True)
-        os.replace(os.path.join(workspace, "new", picture), path)
-        shutil.rmtree(workspace)
+    truth = depth_maps.find(os.path.join(data, "gt_depth"), view.name)
+    path = os.path.join(maps, "pictures", os.path.splitext(view.name)[0] + ".png")
+    if not files.is_newer(path, view.depth, truth):
+        view_picture.draw(path, view, depth_maps.read_map(view.depth),
+                          depth_maps.read(truth) if truth else None)
     return path
 
 
@@ -61,20 +47,21 @@ def _stack(paths, titles, output):
         canvas.save(new, format="JPEG", quality=_QUALITY, optimize=True)
 
 
-def draw_comparison(output, data, by_method, methods, view, bin_dir=None):
+def draw_comparison(output, data, by_method, methods, name):
     """One view with the maps of several methods, one below the other.
 
     by_method: what results.load_set() returns; of several seeds the first is drawn.
     Returns the caption, None if no method has maps of this view.
     """
-    folders = {method: run.folder for method in chosen_methods(methods)
-               for run in by_method.get(method, [])[:1] if workspaces.find_map(run.folder, view)}
-    if not folders:
+    runs = {method: run for method in chosen_methods(methods)
+            for run in by_method.get(method, [])[:1]}
+    views = {method: workspaces.find_view(data, run.folder, name) for method, run in runs.items()}
+    paths = {label(method): _draw_view(data, runs[method].folder, view)
+             for method, view in views.items() if view}
+    if not paths:
         return None
-    titles = [label(method) for method in folders]
-    _stack([_draw_view(data, folder, view, bin_dir) for folder in folders.values()], titles,
-           output)
-    return (f"**{view}.** From above: {', '.join(titles)}. Black in the depth is \"no "
+    _stack(paths.values(), paths, output)
+    return (f"**{name}.** From above: {', '.join(paths)}. Black in the depth is \"no "
             "estimate\"; the error is relative to the true depth, from green (0.1 % and less) "
             "over yellow (1 %) to red (10 % and more).")
 

@@ -78,7 +78,7 @@ def _cube_ids(cells):
     low = cells.min(axis=0).astype(np.int64)
     spans = [int(span) for span in cells.max(axis=0) - low + 1]
     if spans[0] * spans[1] * spans[2] < 2 ** 62:
-        x, y, z = (cells[:, axis] - low[axis] for axis in range(3))
+        x, y, z = (cells - low).T
         return (x * spans[1] + y) * spans[2] + z
     # Very far apart: the values that there are on an axis are numbered first.
     ids = np.zeros(len(cells), np.int64)

@@ -17,19 +17,17 @@ class WorkspaceScorer:
         self.scores = {}  # By name of the view.
 
     def add(self, view, depth, truth):
-        """Returns the score of the view alone, all of its pixels."""
+        """Scores a view (workspaces.View)."""
         try:
-            score = self._scorer.add(depth, truth)
+            self.scores[view.name] = self._scorer.add(depth, truth)
         except Failure as error:
             raise Failure(f"{view.name}: {error}") from error
-        self.scores[view.name] = score
         if self._bounded:
             # At the size of the truth, so that maps of all sizes are judged at the same places.
             height, width = truth.shape
             values = textureness(images.read_grey(view.photograph, width, height)).astype(float)
             for bound, scorer in self._bounded.items():
                 scorer.add(depth, truth, values < bound)
-        return score
 
     def overall(self):
         return self._scorer.overall()

@@ -46,22 +46,26 @@ def link(source, target):
     os.symlink(os.path.abspath(source), target)
 
 
-def _map_folder(path):
-    """The folder of depth maps in a workspace, or the folder itself."""
+def _map_folders(path):
+    """The folders of depth and of normal maps of a workspace or, for its own, of a folder of
+    depth maps."""
     inside = os.path.join(path, "stereo", "depth_maps")
-    return inside if os.path.isdir(inside) else path
+    depth_maps = inside if os.path.isdir(inside) else path
+    return depth_maps, os.path.join(os.path.dirname(depth_maps), "normal_maps")
 
 
 def _find_kind(path, names):
     """Which maps there are of photographs, None for none."""
     return next((kind for kind in _KINDS for name in names
-                 if os.path.exists(os.path.join(_map_folder(path), f"{name}{kind}.bin"))), None)
+                 if os.path.exists(os.path.join(_map_folders(path)[0], f"{name}{kind}.bin"))), None)
 
 
-def find_map(path, name):
-    """Path of a photograph's map in a workspace or folder of maps, "" if none."""
-    kind = _find_kind(path, [name])
-    return "" if kind is None else os.path.join(_map_folder(path), f"{name}{kind}.bin")
+def find_view(data, maps, name):
+    """A photograph of data with its map in a workspace or folder of maps, None if none is there."""
+    kind = _find_kind(maps, [name])
+    return None if kind is None else View(
+        name, os.path.join(data, "images", name),
+        *(os.path.join(folder, f"{name}{kind}.bin") for folder in _map_folders(maps)))
 
 
 def make_view_workspace(data, maps, folder, names):
@@ -75,10 +79,8 @@ def make_view_workspace(data, maps, folder, names):
         name = names[0] if names else "PHOTOGRAPH"
         raise Failure(f"{maps} has no depth map of {name}: it should be called "
                       f"{name}.geometric.bin")
-    depth_maps = _map_folder(maps)
-    normal_maps = os.path.join(os.path.dirname(depth_maps), "normal_maps")
     for name in names:
-        for source, target in ((depth_maps, "depth_maps"), (normal_maps, "normal_maps")):
+        for source, target in zip(_map_folders(maps), ("depth_maps", "normal_maps")):
             path = os.path.join(source, f"{name}{kind}.bin")
             if os.path.exists(path):
                 link(path, os.path.join(folder, "stereo", target, f"{name}.geometric.bin"))

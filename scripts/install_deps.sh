@@ -16,9 +16,8 @@ packages=(
   libflann-dev libfreeimage-dev libgflags-dev libglew-dev libgoogle-glog-dev
   liblz4-dev libmetis-dev libqt5opengl5-dev libsqlite3-dev libsuitesparse-dev
   qtbase5-dev
-  # The engine, the scores, the tests and the benchmarks.
+  # The engine, the tests and the benchmarks.
   libbenchmark-dev libboost-context-dev libgtest-dev libhwy-dev libopencv-contrib-dev libopencv-dev
-  libnanoflann-dev libpugixml-dev nlohmann-json3-dev
 )
 
 if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then

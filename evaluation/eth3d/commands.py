@@ -156,10 +156,7 @@ def run(arguments):
 
 def evaluate(arguments):
     """Scores of what runs made, as far as there is a truth for it."""
-    evaluator = (cloud_scores.named_evaluator(arguments.eth3d_evaluator)
-                 if arguments.eth3d_evaluator else cloud_scores.default_evaluator())
-
-    jobs = []
+    evaluator, jobs = cloud_scores.choose_evaluator(arguments.eth3d_evaluator), []
     for name, scored in _all_runs(arguments).items():
         wanted = [] if arguments.dry_run else [Complete(scored)]
         scans = os.path.join(scored.data, "scans", "scan_alignment.mlp")
