@@ -8,7 +8,6 @@ either byte order, properties of any type in any order, lists and other elements
 """
 
 import dataclasses
-import io
 import itertools
 import os
 import warnings
@@ -174,7 +173,7 @@ class _Ascii:
     """The same from an ascii file, in which each row has a line of its own."""
 
     def __init__(self, file, num_lines):
-        self._file = io.TextIOWrapper(file, encoding="latin-1")
+        self._file = file
         self._number = num_lines
         self._words = []
 
@@ -186,7 +185,7 @@ class _Ascii:
         for line in self._file:
             self._number += 1
             if not line.isspace():
-                return line
+                return line.decode("latin-1")
         raise StopIteration
 
     def rows(self, element, columns, path):

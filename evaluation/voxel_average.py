@@ -64,7 +64,8 @@ def _cells_of_part(points, voxel_size, shift, part, num_parts):
     """Cubes, (n, 3), of the points that are in one part of them, and which points these are."""
     cells, chosen = [], []
     for block in blocks.slices(len(points)):
-        cell = np.floor(points[block] * np.float32(1 / voxel_size) + np.float32(shift))
+        with np.errstate(over="ignore"):
+            cell = np.floor(points[block] * np.float32(1 / voxel_size) + np.float32(shift))
         cell = np.clip(cell, -_MAX_CELL, _MAX_CELL).astype(np.int32)
         inside = np.flatnonzero(cell.sum(axis=1, dtype=np.int64) % num_parts == part)
         cells.append(cell[inside])

@@ -1,5 +1,7 @@
 """What the tests of the package evaluation share; importing this finds it."""
 
+import contextlib
+import io
 import os
 import stat
 import sys
@@ -8,7 +10,8 @@ import unittest
 
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../..")
 sys.path.insert(0, ROOT)
-from evaluation import processes, record  # noqa: E402
+import numpy as np  # noqa: E402
+from evaluation import command_line, processes, record  # noqa: E402
 from evaluation.methods import METHODS  # noqa: E402
 
 
@@ -38,6 +41,45 @@ class TestCase(unittest.TestCase):
         if executable:
             os.chmod(path, stat.S_IRWXU)
         return path
+
+
+class ProgramTest(TestCase):
+    """Drives the main() of a program, in this process, with the words that it is given."""
+    main = None
+
+    def run_main(self, *words):
+        """Returns the exit status, and what it printed on both streams."""
+        with contextlib.redirect_stdout(io.StringIO()) as out, \
+                contextlib.redirect_stderr(io.StringIO()) as errors:
+            try:
+                status = command_line.run(lambda: type(self).main(list(words)))
+            except SystemExit as stop:
+                status = stop.code if isinstance(stop.code, int) else 1
+                if isinstance(stop.code, str):
+                    print(stop.code, file=sys.stderr)
+        return status, out.getvalue(), errors.getvalue()
+
+    def run_well(self, *words):
+        """Returns what it printed on standard output."""
+        status, out, errors = self.run_main(*words)
+        self.assertEqual((status, errors), (0, ""))
+        return out
+
+    def expect_error(self, words, part, status=1):
+        with self.subTest(words=words, part=part):
+            result = self.run_main(*words)
+            self.assertEqual(result[0], status, result)
+            self.assertRegex(result[2], "^ERROR: [^\n]*\n$")
+            self.assertIn(part, result[2])
+
+
+def write_map(path, values):
+    """values: (height, width) or (channels, height, width), as they stand in COLMAP's files."""
+    values = np.array(values, "<f4")
+    channels, height, width = values.shape if values.ndim == 3 else (1, *values.shape)
+    os.makedirs(os.path.dirname(path), exist_ok=True)
+    with open(path, "wb") as file:
+        file.write(b"%d&%d&%d&" % (width, height, channels) + values.tobytes())
 
 
 def run_step(step):
