@@ -124,7 +124,7 @@ class DepthMapScorer:
     def add(self, depth, truth, mask=None):
         """Scores one map. mask: which pixels of the truth count, in the map those that
         correspond to one. Raises Failure if one map cannot be the other one scaled."""
-        _check_shapes(depth, truth)
+        check_shapes(depth.shape, truth.shape)
         to_depth = corresponding_pixels(truth.shape, depth.shape)
         to_truth = corresponding_pixels(depth.shape, truth.shape)
         if mask is None:
@@ -174,12 +174,12 @@ def _median(values):
     return float(np.median(values.astype(np.float64))) if len(values) else None
 
 
-def _check_shapes(depth, truth):
-    """Whether one size is the other one scaled, within one pixel each way."""
+def check_shapes(shape, truth_shape):
+    """Raises Failure unless one size is the other one scaled, within one pixel each way."""
     # Judged at the smaller of the two, where rounding matters.
     (height, width), (other_height, other_width) = sorted(
-        (truth.shape, depth.shape), key=lambda shape: shape[1])
+        (truth_shape, shape), key=lambda one: one[1])
     if ((width - 1) / other_width > (height + 1) / other_height
             or (height - 1) / other_height > (width + 1) / other_width):
-        raise Failure(f"a depth map of {depth.shape[1]}x{depth.shape[0]} pixels has another shape "
-                      f"than its ground truth of {truth.shape[1]}x{truth.shape[0]}")
+        raise Failure(f"a depth map of {shape[1]}x{shape[0]} pixels has another shape than its "
+                      f"ground truth of {truth_shape[1]}x{truth_shape[0]}")

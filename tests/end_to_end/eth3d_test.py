@@ -527,7 +527,7 @@ class Pipeline(Case):
             file.write(f"ply\nformat binary_little_endian 1.0\nelement vertex {len(world) // 3}\n"
                        "property float x\nproperty float y\nproperty float z\nend_header\n"
                        .encode() + world.tobytes())
-        result = tiny.run([os.path.join(BIN_DIR, "evaluate_point_cloud"), "--tolerances",
+        result = tiny.run([os.path.join(SCRIPTS, "evaluate_point_cloud"), "--tolerances",
                            "0.001,0.02", "--reconstruction_ply_path", cloud,
                            "--ground_truth_mlp_path",
                            os.path.join(folder, "scan_alignment.mlp")])

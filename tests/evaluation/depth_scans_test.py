@@ -2,7 +2,6 @@
 
 import math
 import os
-import re
 import subprocess
 import unittest
 
@@ -10,27 +9,18 @@ import cv2
 import numpy as np
 
 from helpers import ROOT, TestCase
-from evaluation import colmap_model, depth_maps, depth_scans
+from evaluation import (colmap_model, depth_maps, depth_scans, meshlab_project,
+                        point_clouds)
 from evaluation.processes import Failure
 
 
 def read_ply(path):
-    """Positions of a file as depth_scans writes them."""
-    with open(path, "rb") as file:
-        data = file.read()
-    head, body = data.split(b"end_header\n", 1)
-    count = int(re.search(rb"element vertex (\d+)", head)[1])
-    assert b"format binary_little_endian 1.0" in head
-    assert len(body) == 12 * count
-    return np.frombuffer(body, "<f4").reshape(count, 3)
+    return point_clouds.read_ply(path)[0]
 
 
 def read_project(path):
     """File names and matrices of a MeshLab project."""
-    with open(path, encoding="ascii") as file:
-        text = file.read()
-    found = re.findall(r'filename="([^"]*)">\s*<MLMatrix44>([^<]*)<', text)
-    return [(name, np.array(matrix.split(), float).reshape(4, 4)) for name, matrix in found]
+    return [(os.path.basename(scan), pose) for scan, pose in meshlab_project.read(path)]
 
 
 class DepthScans(TestCase):
@@ -130,19 +120,6 @@ class DepthScans(TestCase):
                                 check=False)
         self.assertEqual(result.returncode, 1)
         self.assertRegex(result.stderr, "^ERROR: .*no depth to scan\n$")
-
-    def test_damaged_maps(self):
-        path = self.path("map.bin")
-        for content, text in ((b"3&2&1&1234", "not the size"), (b"nothing", "no depth map")):
-            with open(path, "wb") as file:
-                file.write(content)
-            with self.assertRaisesRegex(Failure, text):
-                depth_maps.read(path)
-        values = np.array([[1, np.nan], [np.inf, -2]], np.float32)
-        values.tofile(path)
-        np.testing.assert_array_equal(depth_maps.read_raw(path, 2, 2), [[1, 0], [0, 0]])
-        with self.assertRaisesRegex(Failure, "16 bytes, but 3x2 depths need 24"):
-            depth_maps.read_raw(path, 3, 2)
 
 
 class Frame(unittest.TestCase):
