@@ -7,64 +7,57 @@ import os
 import shutil
 import signal
 import subprocess
+import sys
 import time
 import unittest
 
 import tiny_workspace as tiny
 
-ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../..")
+ROOT = os.path.abspath(os.path.join(os.path.dirname(__file__), "../.."))
+sys.path.insert(0, os.path.join(ROOT, "tests", "evaluation"))
+from helpers import TestCase  # noqa: E402
+
 SCRIPTS = os.path.join(ROOT, "scripts")
 ROOM = os.path.join(ROOT, "examples", "room")
 BIN_DIR = os.path.dirname(os.path.abspath(tiny.COLMAP))
-FAST = ["--PatchMatchStereo.num_iterations", "1",
-        "--PatchMatchStereo.window_radius", "3",
+FAST = ["--PatchMatchStereo.num_iterations", "1", "--PatchMatchStereo.window_radius", "3",
         "--PatchMatchStereo.num_samples", "5"]
 SMALL = ["--every", "4", "--sources", "2", "--image_size", "144"]
 SMALL_OPTIONS = ["--PatchMatchStereo.max_image_size", "144", *FAST]
 
 
-class BenchmarkTest(tiny.TestCase):
+class EvaluateTest(TestCase):
 
     def run_script(self, *arguments, bin_dir=BIN_DIR):
         return subprocess.run(
-            [os.path.join(SCRIPTS, "evaluate"), *arguments],
-            stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE, text=True, timeout=600, check=False,
+            [os.path.join(SCRIPTS, "evaluate"), *arguments], stdin=subprocess.DEVNULL,
+            capture_output=True, text=True, timeout=600, check=False,
             env=dict(os.environ, TAPA_BIN_DIR=bin_dir))
 
     def room(self, *arguments, options=FAST, **more):
         return self.run_script(ROOM, "--out", self.path("out"), *SMALL,
                                *arguments, "--", *options, **more)
 
-    def read(self, *parts):
-        with open(self.path(*parts), encoding="utf-8") as file:
-            return file.read()
-
     def read_json(self, *parts):
         return json.loads(self.read(*parts))
 
+    def read_csv(self, *parts):
+        return list(csv.DictReader(self.read(*parts).splitlines()))
+
     def wrapper(self, when, then):
         """A folder in which colmap does something else at times."""
-        return os.path.dirname(self.program(
-            "bin/colmap", f"case \"$*\" in {when}) {then} ;; esac\n"
-            f"exec '{os.path.abspath(tiny.COLMAP)}' \"$@\"\n"))
-
-    def program(self, name, script):
-        """Writes a shell script. Returns its path."""
-        path = self.path(name)
-        os.makedirs(os.path.dirname(path), exist_ok=True)
-        with open(path, "w", encoding="utf-8") as file:
-            file.write("#!/bin/sh\n" + script)
-        os.chmod(path, 0o755)
-        return path
+        return os.path.dirname(self.write(
+            "bin/colmap", f"#!/bin/sh\ncase \"$*\" in {when}) {then} ;; esac\n"
+            f"exec '{os.path.abspath(tiny.COLMAP)}' \"$@\"\n", executable=True))
 
     def evaluator(self):
         """Stands in for ETH3D's program: half of everything is right."""
-        return self.program("evaluator", (
-            f"[ -s \"$4\" ] && [ -s \"$6\" ] || exit 1\necho \"$@\" >> {self.path('evaluated')}\n"
+        return self.write("evaluator", (
+            f"#!/bin/sh\n[ -s \"$4\" ] && [ -s \"$6\" ] || exit 1\necho \"$@\" >> {self.path('evaluated')}\n"
             "half=$(echo \"$2\" | tr ',' '\\n' | sed 's/.*/0.5/' | tr '\\n' ' ')\n"
             "echo \"Tolerances: $(echo $2 | tr ',' ' ')\"\n"
-            "for name in Completenesses Accuracies F1-scores; do echo \"$name: $half\"; done\n"))
+            "for name in Completenesses Accuracies F1-scores; do echo \"$name: $half\"; done\n"),
+            executable=True)
 
     def test_report_of_methods_seeds_and_other_tools(self):
         first = self.room("--methods", "plain", "--no_clouds")
@@ -96,8 +89,7 @@ class BenchmarkTest(tiny.TestCase):
         self.assertEqual(again.stderr, "")
 
     def check_tables(self):
-        with open(self.path("out/tables/room_depth.csv"), encoding="utf-8") as file:
-            rows = list(csv.DictReader(file))
+        rows = self.read_csv("out/tables/room_depth.csv")
         self.assertEqual([(row["method"], row["tolerance"], row["unit"])
                           for row in rows[:4]],
                          [("plain", "0.03", "m"), ("plain", "0.1", "m"),
@@ -113,9 +105,8 @@ class BenchmarkTest(tiny.TestCase):
         self.assertGreater(float(by_method["tapa"]["f1"]), 0.2)
         self.assertGreater(float(by_method["tapa"]["completeness"]),
                            float(by_method["plain"]["completeness"]))
-        with open(self.path("out/tables/room_points_fused.csv"),
-                  encoding="utf-8") as file:
-            self.assertEqual({row["f1"] for row in csv.DictReader(file)}, {"0.5"})
+        self.assertEqual({row["f1"] for row in self.read_csv("out/tables/room_points_fused.csv")},
+                         {"0.5"})
         # Two clouds of each run, one of the other tool.
         self.assertEqual(len(self.read("evaluated").splitlines()), 4 * 2 + 1)
 
@@ -126,11 +117,9 @@ class BenchmarkTest(tiny.TestCase):
         self.assertIn("one in 4, 2 source views", text)
         self.assertIn("Points were scored by `evaluator`.", text)
         self.assertNotIn("What is missing", text)
-        for name in ("room_errors.png", "room_textureness.png",
-                     "room_room_04.jpg"):
+        for name in ("room_errors.png", "room_textureness.png", "room_room_04.jpg"):
             self.assertIn(f"(figures/{name})", text)
-            self.assertGreater(os.path.getsize(self.path("out/figures", name)),
-                               5000)
+            self.assertGreater(os.path.getsize(self.path("out/figures", name)), 5000)
 
     def test_points(self):
         result = self.room("--methods", "plain")
@@ -143,14 +132,12 @@ class BenchmarkTest(tiny.TestCase):
 
     def test_a_method_that_fails_does_not_stop_the_others(self):
         broken = self.wrapper("*PatchMatchStereo.tapa*", "echo 'ERROR: no luck'; exit 1")
-        result = self.room("--methods", "tapa,plain", "--no_clouds",
-                           bin_dir=broken)
+        result = self.room("--methods", "tapa,plain", "--no_clouds", bin_dir=broken)
         self.assertEqual(result.returncode, 1)
         self.assertIn("ERROR: 1 of 2 failed:\n  "
                       + self.path("out/room/tapa-0"), result.stderr)
         text = self.read("out/report.md")
-        self.assertIn("- room: tapa, seed 0: stereo: patch_match_stereo: no luck",
-                      text)
+        self.assertIn("- room: tapa, seed 0: stereo: patch_match_stereo: no luck", text)
         self.assertRegex(text, r"\| TAPA \| - \| - \|")
         self.assertRegex(text, r"\| plain \| \d+\.\d / ")
         # What failed is tried again.
@@ -215,14 +202,11 @@ class BenchmarkTest(tiny.TestCase):
         result = self.room("--methods", "plain", "--no_clouds", options=[])
         self.assertEqual(result.returncode, 1)
         self.assertIn("was made with options", result.stderr)
-        self.assertEqual(self.read_json("out/room/plain-0/record.json")["done"],
-                         before["done"])
+        self.assertEqual(self.read_json("out/room/plain-0/record.json")["done"], before["done"])
         self.check_a_damaged_record()
 
     def check_a_damaged_record(self):
-        path = self.path("out/room/plain-0/record.json")
-        with open(path, "w", encoding="utf-8") as file:
-            file.write("{}")
+        path = self.write("out/room/plain-0/record.json", "{}")
         for arguments in ([], ["--report_only"]):
             result = self.room("--methods", "plain", "--no_clouds", *arguments)
             self.assertEqual(result.returncode, 1)
@@ -247,8 +231,7 @@ class BenchmarkTest(tiny.TestCase):
         self.assertEqual(len(result.stdout.splitlines()), 8, result.stdout)
 
     def test_a_page_from_a_plan(self):
-        with open(self.path("plan.toml"), "w", encoding="utf-8") as file:
-            file.write(f"""
+        path = self.write("plan.toml", f"""
 page = "page.md"
 images = "images"
 title = "A page"
@@ -266,8 +249,7 @@ show = ["depth", "errors"]
 [[section]]
 set = "absent"
 """)
-        arguments = ["--plan", self.path("plan.toml"), "--data",
-                     os.path.dirname(ROOM), "--out", self.path("out"),
+        arguments = ["--plan", path, "--data", os.path.dirname(ROOM), "--out", self.path("out"),
                      "--no_clouds"]
         result = self.run_script(*arguments)
         self.assertEqual(result.returncode, 0, result.stderr)
@@ -287,8 +269,7 @@ set = "absent"
     def test_bad_input_is_one_line(self):
         out = ["--out", self.path("out")]
         for arguments, text in (
-                ([], "--out is required"),
-                (out, "either data sets or --plan"),
+                ([], "--out is required"), (out, "either data sets or --plan"),
                 ([ROOM, *out, "--plan", "x"], "either data sets or --plan"),
                 ([ROOM], "--out is required"),
                 ([ROOM, *out, "--methods", "none"], "there is no method none; there are plain"),
