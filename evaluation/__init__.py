@@ -22,6 +22,6 @@ import sys
 
 # Before anything runs for hours and then cannot be drawn.
 for _module, _package in (("numpy", "numpy"), ("cv2", "opencv"), ("scipy", "scipy"),
-                          ("matplotlib", "matplotlib"), ("PIL", "pil"), ("pydantic", "pydantic")):
+                          ("matplotlib", "matplotlib"), ("pydantic", "pydantic")):
     if importlib.util.find_spec(_module) is None:
         sys.exit(f"ERROR: python3-{_package} is missing; run scripts/install_deps.sh")

@@ -2,14 +2,16 @@
 
 import os
 
-from . import depth_maps, files, view_picture, workspaces
+import cv2
+
+from . import depth_maps, files, images, view_picture, workspaces
 from .methods import METHODS, label
 
 _WIDTH = 800
 _QUALITY = 75
 
 
-def _draw_view(data, maps, view):
+def _draw_view(data, maps, view, title):
     """Draws a view of the workspace MAPS into MAPS/pictures. Returns its path.
 
     A picture that is newer than what it shows is kept.
@@ -18,33 +20,18 @@ def _draw_view(data, maps, view):
     path = os.path.join(maps, "pictures", os.path.splitext(view.name)[0] + ".png")
     if not files.is_newer(path, view.depth, truth):
         view_picture.draw(path, view, depth_maps.read_map(view.depth),
-                          depth_maps.read(truth) if truth else None)
+                          depth_maps.read(truth) if truth else None, title)
     return path
 
 
-def _stack(paths, titles, output):
-    """Writes a JPEG with pictures one below the other, a title above each."""
-    from PIL import Image, ImageDraw, ImageFont
-    import matplotlib
-    # matplotlib's own font, so that all machines write the same.
-    font = ImageFont.truetype(os.path.join(matplotlib.get_data_path(), "fonts", "ttf",
-                                           "DejaVuSans-Bold.ttf"), 16)
-    margin = 26
-    pictures = []
-    for path in paths:
-        picture = Image.open(path).convert("RGB")
-        height = max(1, round(picture.height * _WIDTH / picture.width))
-        pictures.append(picture.resize((_WIDTH, height), Image.LANCZOS))
-    height = sum(picture.height + margin for picture in pictures)
-    canvas = Image.new("RGB", (_WIDTH, height), "white")
-    draw = ImageDraw.Draw(canvas)
-    y = 0
-    for picture, title in zip(pictures, titles):
-        draw.text((8, y + 4), title, fill="black", font=font)
-        canvas.paste(picture, (0, y + margin))
-        y += margin + picture.height
-    with files.replacing(output) as new:
-        canvas.save(new, format="JPEG", quality=_QUALITY, optimize=True)
+def _stack(paths, output):
+    """Writes a JPEG with pictures one below the other."""
+    pictures = [images.read_color(path) for path in paths]
+    stacked = cv2.vconcat([cv2.resize(
+        picture, (_WIDTH, max(1, round(picture.shape[0] * _WIDTH / picture.shape[1]))),
+        interpolation=cv2.INTER_AREA) for picture in pictures])
+    quality = [cv2.IMWRITE_JPEG_QUALITY, _QUALITY, cv2.IMWRITE_JPEG_OPTIMIZE, 1]
+    files.write_bytes(output, cv2.imencode(".jpg", stacked, quality)[1].tobytes())
 
 
 def draw_comparison(output, data, by_method, methods, name):
@@ -56,11 +43,11 @@ def draw_comparison(output, data, by_method, methods, name):
     runs = {method: run for method in chosen_methods(methods)
             for run in by_method.get(method, [])[:1]}
     views = {method: workspaces.find_view(data, run.folder, name) for method, run in runs.items()}
-    paths = {label(method): _draw_view(data, runs[method].folder, view)
+    paths = {label(method): _draw_view(data, runs[method].folder, view, label(method))
              for method, view in views.items() if view}
     if not paths:
         return None
-    _stack(paths.values(), paths, output)
+    _stack(paths.values(), output)
     return (f"**{name}.** From above: {', '.join(paths)}. Black in the depth is \"no "
             "estimate\"; the error is relative to the true depth, from green (0.1 % and less) "
             "over yellow (1 %) to red (10 % and more).")

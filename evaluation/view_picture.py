@@ -25,7 +25,7 @@ _LAYOUTS = {(False, False): "PDL", (True, False): "PD;NL", (False, True): "PDL;.
             (True, True): "PDN;LTE"}
 
 
-def draw(path, view, depth, truth=None):
+def draw(path, view, depth, truth=None, title=""):
     """Writes a PNG of a view (workspaces.View) and its depth map, at most 2000 pixels wide.
 
     truth: measured depth, without which its panels are left out, as those of normals are where
@@ -50,6 +50,8 @@ def draw(path, view, depth, truth=None):
         panels["E"] = "Error", color_errors(depth, truth)
     layout = _LAYOUTS[normals is not None, truth is not None]
     figure, axes = _lay_out(layout, photograph.shape[0] / photograph.shape[1])
+    if title:
+        figure.suptitle(title, x=0.01, ha="left", fontsize=24, fontweight="bold")
     for name, (title, image) in panels.items():
         axes[name].imshow(image, aspect="auto" if min(image.shape[:2]) < 4 else "equal")
         axes[name].set_title(title, loc="left")

@@ -9,13 +9,11 @@ import json
 import os
 import re
 import shutil
-import signal
 import stat
 import subprocess
 import sys
 import tempfile
 import threading
-import time
 import unittest
 
 import cv2
@@ -25,7 +23,7 @@ import tiny_workspace as tiny
 
 ROOT = os.path.abspath(os.path.join(os.path.dirname(__file__), "../.."))
 sys.path.insert(0, ROOT)
-from evaluation import depth_maps, meshlab_project, point_clouds  # noqa: E402
+from evaluation import depth_maps, files, meshlab_project, point_clouds  # noqa: E402
 from evaluation.point_cloud_score import LaserScan, merge_scans  # noqa: E402
 
 SCRIPTS = os.path.join(ROOT, "scripts")
@@ -593,30 +591,11 @@ class Pipeline(Case):
             with self.subTest(words=words):
                 self.assert_failed(self.eth3d(*words), text)
 
-    def test_9_stops_and_goes_on(self):
-        # Long enough to be stopped.
-        slow = ["--seeds", "5", "--methods", "colmap", "--resolution", "both", "--image_sizes",
-                "144", "--", "--PatchMatchStereo.num_iterations", "60"]
-        process = subprocess.Popen(
-            [os.path.join(SCRIPTS, "eth3d"), "run", self.folder, *slow], text=True,
-            stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
-            env=dict(os.environ, TAPA_BIN_DIR=BIN_DIR))
-        self.assertIn("stereo ...", process.stderr.readline())
-        other = self.eth3d("run", "--methods", "colmap")
-        self.assert_failed(other, f"another eth3d-run is at work in {self.folder};")
-        self.assert_done(self.eth3d("run", "--methods", "colmap", "--dry_run", fast=FAST))
-        time.sleep(0.5)
-        process.send_signal(signal.SIGINT)
-        _, errors = process.communicate(timeout=120)
-        self.assertEqual(process.returncode, 130, errors)
-        self.assertIn("ERROR: stopped; the same command goes on from here", errors)
-        # Nothing else was begun.
-        self.assertFalse(os.path.exists(self.run_path("office_rig", "colmap").replace("-0", "-5")))
-
-    def test_9_other_options_are_not_mixed(self):
-        result = run_script("eth3d", "run", self.folder, "--methods", "tapa", "--scenes",
-                            "office", *FAST, "--PatchMatchStereo.filter", "0")
-        self.assert_failed(result, "office_dslr/tapa-0", "was made with options")
+    def test_9_others_are_kept_out(self):
+        with files.lock(self.folder, "eth3d-run"):
+            self.assert_failed(self.eth3d("run", "--methods", "colmap"),
+                               f"another eth3d-run is at work in {self.folder};")
+            self.assert_done(self.eth3d("run", "--methods", "colmap", "--dry_run", fast=FAST))
 
 
 if __name__ == "__main__":

@@ -196,25 +196,6 @@ class EvaluateTest(TestCase):
         self.assertRegex(self.read("out/report.md"),
                          r"\| plain \| 1 \| 3 \| 144x96 .*\| - \| - \| - \|\n")
 
-    def test_other_options_are_refused(self):
-        self.room("--methods", "plain", "--no_clouds")
-        before = self.read_json("out/room/plain-0/record.json")
-        result = self.room("--methods", "plain", "--no_clouds", options=[])
-        self.assertEqual(result.returncode, 1)
-        self.assertIn("was made with options", result.stderr)
-        self.assertEqual(self.read_json("out/room/plain-0/record.json")["done"], before["done"])
-        self.check_a_damaged_record()
-
-    def check_a_damaged_record(self):
-        path = self.write("out/room/plain-0/record.json", "{}")
-        for arguments in ([], ["--report_only"]):
-            result = self.room("--methods", "plain", "--no_clouds", *arguments)
-            self.assertEqual(result.returncode, 1)
-            self.assertIn(f"ERROR: {path} is damaged: it has no key ", result.stderr)
-            self.assertNotIn("Traceback", result.stderr)
-        self.assertTrue(os.path.exists(self.path("out/room/plain-0/fused.ply")))
-        self.assertEqual(self.read("out/room/plain-0/record.json"), "{}")
-
     def test_dry_run_does_nothing(self):
         result = self.room("--dry_run", "--no_clouds", "--methods", "tapa")
         self.assertEqual(result.returncode, 0, result.stderr)

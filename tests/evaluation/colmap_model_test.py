@@ -101,7 +101,3 @@ class TextModel(TestCase):
             self.write_model(cameras, images)
             with self.assertRaisesRegex(Failure, f"^[^\n]*{text}[^\n]*$"):
                 colmap_model.read_views(self.folder)
-
-
-if __name__ == "__main__":
-    unittest.main()

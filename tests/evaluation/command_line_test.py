@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """What the command lines of the evaluation share."""
 
 import argparse
@@ -70,7 +69,3 @@ class RunTest(unittest.TestCase):
             with contextlib.redirect_stderr(io.StringIO()) as errors:
                 self.assertEqual(command_line.run(main), status)
             self.assertEqual(errors.getvalue(), text)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """Files of results that lack something: one line says what, and nothing is lost."""
 
 import copy
@@ -126,7 +125,3 @@ class DamagedFilesTest(TestCase):
             self.assertIn(words, message)
             self.assertIn(folder, message)
             self.assertTrue(os.path.exists(kept))
-
-
-if __name__ == "__main__":
-    unittest.main()

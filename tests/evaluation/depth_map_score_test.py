@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """Scores of depth maps by hand, and next to a reference; medians, textureness and colours."""
 
 import math
@@ -181,7 +180,3 @@ class ColorsTest(unittest.TestCase):
         normals = np.float32([[(0, 0, -1), (1, 0, 0), (0, 0, 0)]])
         self.assertEqual(view_picture.color_normals(normals)[0].tolist(),
                          [[128, 128, 255], [255, 128, 128], [0, 0, 0]])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -132,7 +132,3 @@ class Frame(unittest.TestCase):
         view = colmap_model.View(0, "a", camera, np.eye(3), np.zeros(3))
         self.assertAlmostEqual(depth_scans.beam_halfangle(view, np.ones((240, 360))),
                                math.degrees(math.atan(1 / 525)))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -162,7 +162,3 @@ class Submission(TestCase):
         self.expect_failure("not known how long")
         os.remove(self.path("run/record.json"))
         self.expect_failure("has no run")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,10 +1,8 @@
-#!/usr/bin/python3
 """What scripts/evaluate_depth_maps prints, writes, draws and refuses."""
 
 import json
 import os
 import subprocess
-import unittest
 
 import cv2
 import numpy as np
@@ -241,7 +239,3 @@ class FilesTest(TestCase):
         for name, found in (("a.jpg", "gt/a.png"), ("rig/a.jpg", "gt/a.png"),
                             ("rig/b.jpg", "gt/rig/b.bin"), ("b.jpg", "gt/b.png"), ("c.jpg", "")):
             self.assertEqual(depth_maps.find(self.path("gt"), name), found and self.path(found))
-
-
-if __name__ == "__main__":
-    unittest.main()

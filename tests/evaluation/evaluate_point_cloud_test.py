@@ -1,10 +1,8 @@
-#!/usr/bin/python3
 """What scripts/evaluate_point_cloud prints, writes and refuses."""
 
 import json
 import os
 import subprocess
-import unittest
 
 import numpy as np
 
@@ -171,7 +169,3 @@ class EvaluatePointCloudTest(ProgramTest):
                              ("--completeness_cloud_output_path", "file/c"),
                              ("--accuracy_cloud_output_path", "file/a")):
             self.expect_error([*self.all, option, self.path(path)], "cannot be written: ")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """Scores of clouds that can be computed by hand, and of random ones next to a reference."""
 
 import collections
@@ -283,7 +282,3 @@ class ChecksTest(unittest.TestCase):
                     np.array([(0, sign * largest, 0)], np.float32), 0.01, "c.ply")
                 self.assertTrue(found.startswith(text) and bool(found) == bool(text), found)
         self.assertEqual(cloud_checks.check_precision(circle(2)[:0], 0.01, "c.ply"), "")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,8 +1,6 @@
-#!/usr/bin/python3
 """PLY files of all kinds, MeshLab projects, and those that are damaged."""
 
 import os
-import unittest
 
 import numpy as np
 
@@ -201,7 +199,3 @@ class ProjectTest(TestCase):
                 with self.assertRaisesRegex(Failure, "scans.mlp: scan bad.ply has a pose .*" + part):
                     meshlab_project.read(self.write_project(("good.ply", IDENTITY),
                                                             ("bad.ply", matrix)))
-
-
-if __name__ == "__main__":
-    unittest.main()

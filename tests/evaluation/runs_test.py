@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """Runs, their scores and records, with programs that only pretend."""
 
 import functools
@@ -559,7 +558,3 @@ class MachineTest(unittest.TestCase):
                 ("Computing on GPU 1 (A), 3 (A).", "2 x A"),
                 ("Computing on the CPU, as there is no driver.", None)):
             self.assertEqual(machine.gpus_in(["Reading", line, "Elapsed"]), text)
-
-
-if __name__ == "__main__":
-    unittest.main()
