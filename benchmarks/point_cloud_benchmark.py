@@ -35,25 +35,19 @@ def scan_hall(position, count):
     return (rays * to_walls.min(axis=1)[:, None]).astype(np.float32)
 
 
-def reconstruct_hall(scanned, count, random):
-    points = scanned[random.integers(0, len(scanned), count)]
+def make_scene(num_reconstructed, num_scanned, reconstruction, project):
+    poses, scanned = {"scan1.ply": np.eye(4), "scan2.ply": np.eye(4)}, []
+    for (name, pose), position in zip(poses.items(), ((-2, 1, 0), (2, 1, 0))):
+        pose[:3, 3] = position
+        points = scan_hall(pose[:3, 3], num_scanned // 2)
+        point_clouds.write_ply(os.path.join(os.path.dirname(project), name), points)
+        scanned.append(points + np.float32(position))
+    meshlab_project.write(project, poses.items())
+    random, scanned = np.random.default_rng(1), np.concatenate(scanned)
+    points = scanned[random.integers(0, len(scanned), num_reconstructed)]
     points += random.normal(0, 0.01, points.shape).astype(np.float32)
     points[::20] = random.uniform(-1, 1, points[::20].shape) * (5, 5, 2.5)
-    return points
-
-
-def make_scene(num_reconstructed, num_scanned, reconstruction, project):
-    scans, scanned = [], []
-    for x in (-2, 2):
-        pose = np.eye(4)
-        pose[:3, 3] = x, 1, 0
-        points = scan_hall(pose[:3, 3], num_scanned // 2)
-        scans.append((f"scan{len(scans) + 1}.ply", pose))
-        point_clouds.write_ply(os.path.join(os.path.dirname(project), scans[-1][0]), points)
-        scanned.append(points + pose[:3, 3].astype(np.float32))
-    meshlab_project.write(project, scans)
-    point_clouds.write_ply(reconstruction, reconstruct_hall(
-        np.concatenate(scanned), num_reconstructed, np.random.default_rng(1)))
+    point_clouds.write_ply(reconstruction, points)
 
 
 def main(num_reconstructed=1000000, num_scanned=2000000,

@@ -7,10 +7,10 @@ The reader is our own, as Debian 12 has none that takes every kind of PLY: ascii
 either byte order, properties of any type in any order, lists and other elements among them.
 """
 
-import dataclasses
 import itertools
 import os
 import warnings
+from typing import NamedTuple
 
 import numpy as np
 
@@ -28,16 +28,14 @@ _MAX_LINE = 65536  # Headers have short lines; what does not is another kind of 
 _ROWS = 1 << 18  # That are read at a time.
 
 
-@dataclasses.dataclass
-class _Property:
+class _Property(NamedTuple):
     """size_type: of the number in front of a list, None where there is one value only."""
     name: str
     type: str
     size_type: str = None
 
 
-@dataclasses.dataclass
-class _Element:
+class _Element(NamedTuple):
     """What a header says of the rows of one kind."""
     name: str
     count: int
