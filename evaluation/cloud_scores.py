@@ -79,8 +79,7 @@ def parse(text, tolerances):
 
 
 def _read(folder):
-    return files.read_json(os.path.join(folder, "cloud_scores.json"),
-                           Dict[str, CloudScore]) or {}
+    return files.read_json(os.path.join(folder, "cloud_scores.json"), Dict[str, CloudScore]) or {}
 
 
 def load(folder):

@@ -48,8 +48,7 @@ def scan_points(view, depth):
     height, width = depth.shape
     scale = (view.camera.width / width, view.camera.height / height)
     rows, columns = np.nonzero(depth > 0)
-    u, v = colmap_model.unproject(view.camera, (columns + 0.5) * scale[0],
-                                  (rows + 0.5) * scale[1])
+    u, v = colmap_model.unproject(view.camera, (columns + 0.5) * scale[0], (rows + 0.5) * scale[1])
     z = depth[rows, columns].astype(np.float64)
     points = np.stack((u * z, v * z, z), axis=1) @ SCANNER_FROM_CAMERA.T
     return points[np.isfinite(points).all(axis=1)]

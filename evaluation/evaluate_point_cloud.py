@@ -118,8 +118,7 @@ def _summarize(points, verdicts, cloud_path, arguments):
 def _completeness(reconstruction, scans, arguments):
     _say("Computing completeness")
     points, tolerances = scores.merge_scans(scans), arguments.tolerances
-    verdicts = scores.judge_completeness(points, reconstruction, tolerances,
-                                         arguments.num_threads)
+    verdicts = scores.judge_completeness(points, reconstruction, tolerances, arguments.num_threads)
     if len(reconstruction):
         _warn(cloud_checks.check_overlap(verdicts, tolerances[-1], len(tolerances)))
     return _summarize(points, verdicts, arguments.completeness_cloud_output_path, arguments)

@@ -52,8 +52,7 @@ def check_method(name):
 
 # The columns of the paper's Table 2: with the paper's own method, and with what
 # this program does.
-ABLATION = ["colmap", "paper-weights", "paper-coarse", "paper-fine",
-            "paper-refinement", "paper"]
+ABLATION = ["colmap", "paper-weights", "paper-coarse", "paper-fine", "paper-refinement", "paper"]
 TAPA_ABLATION = ["plain", *(name.replace("paper", "tapa") for name in ABLATION[1:])]
 
 

@@ -129,8 +129,7 @@ def _look(places, beams, shape):
     # may be many: of equal ones the first is looked at.
     same_as = np.arange(len(places))
     at_scanner = np.flatnonzero(lengths <= radii)
-    _, first, which = np.unique(places[at_scanner], axis=0, return_index=True,
-                                return_inverse=True)
+    _, first, which = np.unique(places[at_scanner], axis=0, return_index=True, return_inverse=True)
     same_as[at_scanner] = at_scanner[first[which]]
     looked = np.unique(same_as)
     for place, begin, end in beams.near(places[looked], radii[looked]):

@@ -75,8 +75,7 @@ def perform(jobs, dry_run=False):
 
 def _print(commands):
     for command in commands:
-        print(command if isinstance(command, str) else processes.command_text(command),
-              flush=True)
+        print(command if isinstance(command, str) else processes.command_text(command), flush=True)
 
 
 def exit_status(failures, count):

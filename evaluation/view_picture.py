@@ -55,8 +55,7 @@ def draw(path, view, depth, truth=None, title=""):
     for name, (title, image) in panels.items():
         axes[name].imshow(image, aspect="auto" if min(image.shape[:2]) < 4 else "equal")
         axes[name].set_title(title, loc="left")
-    _draw_legend(figure, axes["L"], lines, scale, normals is not None,
-                 truth is not None)
+    _draw_legend(figure, axes["L"], lines, scale, normals is not None, truth is not None)
     with files.replacing(path) as new:
         figure.savefig(new, format="png", dpi=_INCH)
     pyplot.close(figure)

@@ -186,8 +186,7 @@ def write_part(out, part, source, is_training, voxel_size):
             _, encoded = cv2.imencode(".jpg" if is_jpeg else ".png", picture,
                                       [cv2.IMWRITE_JPEG_QUALITY, 95] if is_jpeg else [])
             files.write_bytes(os.path.join(out, "images", name), encoded.tobytes())
-    models = [(f"{part.track.tag}_calibration_undistorted", part.undistorted,
-               "undistorted_name")]
+    models = [(f"{part.track.tag}_calibration_undistorted", part.undistorted, "undistorted_name")]
     if is_training:
         models.append((part.track.original_calibration, part.originals, "original_name"))
     for folder, cameras, key in models:

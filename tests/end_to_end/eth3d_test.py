@@ -83,8 +83,7 @@ class Site:
                 self.send_response(206 if wanted else 200)
                 self.send_header("Content-Length", str(len(data) - begin))
                 if wanted:
-                    self.send_header("Content-Range",
-                                     f"bytes {begin}-{len(data) - 1}/{len(data)}")
+                    self.send_header("Content-Range", f"bytes {begin}-{len(data) - 1}/{len(data)}")
                 self.end_headers()
                 if send:
                     self.wfile.write(data[begin:site.cut.get(name, len(data))])
@@ -241,8 +240,7 @@ class Download(Case):
         fetched = [line.split()[-1] for line in result.stdout.splitlines()
                    if line.startswith("curl")]
         self.assertEqual(len(fetched), 4 * 18 + 17)
-        self.assertEqual({os.path.dirname(url) for url in fetched},
-                         {"https://www.eth3d.net/data"})
+        self.assertEqual({os.path.dirname(url) for url in fetched}, {"https://www.eth3d.net/data"})
 
 
 class Prepare(Case):

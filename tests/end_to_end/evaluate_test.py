@@ -79,8 +79,7 @@ class EvaluateTest(TestCase):
         self.assertEqual(self.read_json("out/room/plain-0/record.json"), record)
         self.assertEqual(record["views"], 3)
         self.assertEqual(record["image_size"], [144, 96])
-        self.assertEqual(record["options"], [
-            "--PatchMatchStereo.seed", "0", *SMALL_OPTIONS])
+        self.assertEqual(record["options"], ["--PatchMatchStereo.seed", "0", *SMALL_OPTIONS])
         self.check_tables()
         self.check_page()
         # Once more: nothing is left to do.

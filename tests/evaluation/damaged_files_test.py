@@ -30,8 +30,7 @@ class SchemasTest(unittest.TestCase):
         for value in ({"a": "", "c": {}}, {"a": "", "c": {}, "more": 1},
                       {"a": "x", "b": [1, 0.5], "c": {"d": None, "e": [1, 2]}}):
             # Nothing is lost, nothing converted.
-            self.assertEqual(schemas.check(value, Example, "x.json").dict(),
-                             {"b": [], **value})
+            self.assertEqual(schemas.check(value, Example, "x.json").dict(), {"b": [], **value})
 
     def test_what_is_not(self):
         for value, text in (([], "it is not an object"), ({"a": ""}, "it has no key c"),
@@ -95,8 +94,7 @@ class DamagedFilesTest(TestCase):
 
     def test_scans_and_sets(self):
         about = {"beam_divergence_halfangle_deg": 1}
-        self.check_damaged("scans.json", about, about,
-                           lambda: depth_scans.read_about(self.folder))
+        self.check_damaged("scans.json", about, about, lambda: depth_scans.read_about(self.folder))
         scene = {"scene": "office", "resolution": "high", "split": "training"}
         self.check_damaged("office_dslr/set.json", scene, scene,
                            lambda: scenes.prepared_scenes(self.folder))

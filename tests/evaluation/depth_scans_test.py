@@ -9,8 +9,7 @@ import cv2
 import numpy as np
 
 from helpers import ROOT, TestCase
-from evaluation import (colmap_model, depth_maps, depth_scans, meshlab_project,
-                        point_clouds)
+from evaluation import colmap_model, depth_maps, depth_scans, meshlab_project, point_clouds
 from evaluation.processes import Failure
 
 

@@ -26,8 +26,7 @@ class Scenes(unittest.TestCase):
 
     def test_table(self):
         def names(resolution, split):
-            return [scene.name for scene in scenes.select(
-                scenes.all_scenes(), resolution, split)]
+            return [scene.name for scene in scenes.select(scenes.all_scenes(), resolution, split)]
 
         self.assertEqual(len(names("high", "training")), 13)
         self.assertEqual(len(names("high", "test")), 12)

@@ -46,8 +46,7 @@ class ResultsCase(TestCase):
                                    for bound, part in (low or {}).items()],
                 "made_from": {"maps": "", "truth": ""}})
         if f1:
-            source = {"cloud": "", "scans": "", "evaluator": "evaluate_point_cloud",
-                      "options": []}
+            source = {"cloud": "", "scans": "", "evaluator": "evaluate_point_cloud", "options": []}
             files.write_json(os.path.join(folder, "cloud_scores.json"), {
                 cloud: {"tolerances": [0.01, 0.02], "completeness": [0.1, value],
                         "accuracy": [0.1, value], "f1": [0.1, value], "made_from": source}
@@ -165,8 +164,7 @@ class TablesTest(ResultsCase):
             ["plain", "30", "0.25", "66.7", "66.7", "-"],
             ["x"] + ["-"] * 5])
         # A mean over fewer tolerances would be another thing.
-        table = tables.trade_table(self.load(), ["colmap", "plain"],
-                                   [(0.02, "m"), (0.05, "m")])
+        table = tables.trade_table(self.load(), ["colmap", "plain"], [(0.02, "m"), (0.05, "m")])
         self.assertEqual([row[5] for row in table.rows], ["-", "66.7"])
 
     def test_published_figures_agree_with_each_other(self):
@@ -190,8 +188,7 @@ class TablesTest(ResultsCase):
         for i, scene in enumerate(low):
             self.write_result(scene.set_name, "tapa", f1={"fused": 0.5 + 0.01 * i})
         table = paper_tables.table1(groups_of(self.out))
-        self.assertEqual(table.rows[0], ["TAPA", "this program", "-", "52.00", "-", "-", "-",
-                                         "-"])
+        self.assertEqual(table.rows[0], ["TAPA", "this program", "-", "52.00", "-", "-", "-", "-"])
         self.assertEqual(table.rows[1][2:], ["-"] * 6)
         self.assertIn(["COLMAP", "published", "62.73", "49.91", "67.66", "66.92", "52.32",
                        "73.01"], table.rows)
@@ -235,8 +232,7 @@ class FiguresTest(ResultsCase):
 
     def test_which_methods_are_drawn(self):
         methods = ["plain", "tapa", "tapa-fine", "paper", "other-tool"]
-        self.assertEqual(figures.chosen_methods(methods),
-                         ["plain", "tapa", "paper", "other-tool"])
+        self.assertEqual(figures.chosen_methods(methods), ["plain", "tapa", "paper", "other-tool"])
         self.assertEqual(pictures.chosen_methods(methods), ["plain", "tapa", "other-tool"])
         self.assertEqual(figures.chosen_methods(["tapa-fine"]), ["tapa-fine"])
         self.assertEqual(pictures.chosen_methods(["paper"]), ["paper"])
