@@ -1,4 +1,4 @@
-"""What scripts/evaluate and scripts/eth3d are made of.
+"""What scripts/evaluate, eth3d, evaluate_depth_maps and evaluate_point_cloud are made of.
 
 A run is one method with one seed on one set of photographs. It has a folder,
 OUT/SET/METHOD-SEED, which is a COLMAP workspace with these files beside it:
