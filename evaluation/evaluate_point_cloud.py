@@ -44,8 +44,8 @@ def _parse(words):
         help="if given, the scans are written to PATH.tolerance_TOLERANCE.ply: green where they "
         "are complete, else red")
     add("--accuracy_cloud_output_path",
-        help="if given, the reconstruction is written to PATH.tolerance_TOLERANCE.ply: green where "
-        "it is accurate, red where it is not, blue where it cannot be judged")
+        help="if given, the reconstruction is written to PATH.tolerance_TOLERANCE.ply: green "
+        "where it is accurate, red where it is not, blue where it cannot be judged")
     add("--json", help="file for the scores")
     add("--num_threads", type=int, default=-1, help="-1: one per core (%(default)s)")
     arguments = parser.parse_args(words)

@@ -180,7 +180,8 @@ class LinkComparison(Step):
             options=[], compare=self._paths, photographs=len(photographs))
         for path in self._paths:
             if os.path.isdir(path):
-                workspaces.make_view_workspace(self._experiment.data, path, self._folder, photographs)
+                workspaces.make_view_workspace(self._experiment.data, path, self._folder,
+                                               photographs)
                 content.views, content.image_size = stereo_run.describe_maps(self._folder)
             else:
                 workspaces.link(path, os.path.join(self._folder, "fused.ply"))

@@ -56,12 +56,13 @@ def _map_folders(path):
 
 def _find_kind(path, names):
     """Which maps there are of photographs, None for none."""
+    folder, _ = _map_folders(path)
     return next((kind for kind in _KINDS for name in names
-                 if os.path.exists(os.path.join(_map_folders(path)[0], f"{name}{kind}.bin"))), None)
+                 if os.path.exists(os.path.join(folder, f"{name}{kind}.bin"))), None)
 
 
 def find_view(data, maps, name):
-    """A photograph of data with its map in a workspace or folder of maps, None if none is there."""
+    """A photograph of data with its map in a workspace or folder of maps, None for none."""
     kind = _find_kind(maps, [name])
     return None if kind is None else View(
         name, os.path.join(data, "images", name),

@@ -282,7 +282,8 @@ class Prepare(Case):
 
     def test_depth_is_that_of_the_undistorted_photograph(self):
         self.assert_done(self.prepare("--resolution", "high"))
-        depth = depth_maps.read(self.set("attic_dslr/gt_depth/dslr_images_undistorted/DSC_0104.bin"))
+        depth = depth_maps.read(self.set(
+            "attic_dslr/gt_depth/dslr_images_undistorted/DSC_0104.bin"))
         self.assertEqual(depth.shape, (64, 96))
         truth = depth_maps.read(os.path.join(ROOT, "examples/room/gt_depth/room_05.png"))
         truth = cv2.resize(truth, (96, 64), interpolation=cv2.INTER_NEAREST_EXACT)

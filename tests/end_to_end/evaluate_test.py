@@ -53,7 +53,8 @@ class EvaluateTest(TestCase):
     def evaluator(self):
         """Stands in for ETH3D's program: half of everything is right."""
         return self.write("evaluator", (
-            f"#!/bin/sh\n[ -s \"$4\" ] && [ -s \"$6\" ] || exit 1\necho \"$@\" >> {self.path('evaluated')}\n"
+            "#!/bin/sh\n[ -s \"$4\" ] && [ -s \"$6\" ] || exit 1\n"
+            f"echo \"$@\" >> {self.path('evaluated')}\n"
             "half=$(echo \"$2\" | tr ',' '\\n' | sed 's/.*/0.5/' | tr '\\n' ' ')\n"
             "echo \"Tolerances: $(echo $2 | tr ',' ' ')\"\n"
             "for name in Completenesses Accuracies F1-scores; do echo \"$name: $half\"; done\n"),

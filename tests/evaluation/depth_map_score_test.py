@@ -34,7 +34,7 @@ class ScoreTest(unittest.TestCase):
                     coverage=0.5, measurement_coverage=0.6, median_absolute_error=0.25,
                     median_relative_error=0.125)
         # A tolerance includes its own value.
-        for i, expected in enumerate(((2 / 5, 2 / 3, 0.5), (3 / 5, 1, 0.75), (1 / 5, 1 / 3, 0.25))):
+        for i, expected in enumerate(((0.4, 2 / 3, 0.5), (0.6, 1, 0.75), (0.2, 1 / 3, 0.25))):
             np.testing.assert_allclose(found.at(i), expected)
 
     def test_what_is_no_depth(self):
@@ -105,7 +105,8 @@ class ScoreTest(unittest.TestCase):
             for (row, col), value in np.ndenumerate(of.astype(float)):
                 yield value, float(at(other, (row + 0.5) / height, (col + 0.5) / width))
 
-        for shape, truth_shape in (((23, 31), (23, 31)), ((20, 30), (30, 45)), ((41, 50), (19, 23))):
+        for shape, truth_shape in (((23, 31), (23, 31)), ((20, 30), (30, 45)),
+                                   ((41, 50), (19, 23))):
             depth, truth = (np.where(random.random(size) < 0.2, random.choice((0, NAN), size),
                                      random.uniform(1, 3, size)).astype(np.float32)
                             for size in (shape, truth_shape))

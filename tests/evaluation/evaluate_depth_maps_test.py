@@ -22,7 +22,8 @@ class EvaluateDepthMapsTest(ProgramTest):
     def setUp(self):
         super().setUp()
         for name in ("w/images/a.jpg", "w/images/b.jpg"):
-            self.write_image(name, np.random.default_rng(1).integers(100, 200, (4, 6, 3), np.uint8))
+            random = np.random.default_rng(1)
+            self.write_image(name, random.integers(100, 200, (4, 6, 3), np.uint8))
         self.depth = np.full((4, 6), 2.0)
         self.depth[0, 0] = 2.25
         self.write_map("a.jpg.geometric.bin", self.depth)
@@ -89,10 +90,10 @@ Tolerance  Completeness %  Accuracy %   F1 %
         os.remove(self.path("gt/b.png"))
         out, content = self.scores(*self.both)
         self.assertTrue(out.endswith(
-            "1 depth map without ground truth: not scored.\n2 pixels with a negative or not finite "
-            "depth: counted as without estimate.\n"))
-        self.assertEqual((content["overall"]["num_invalid"], content["images"][0]["num_estimates"]),
-                         (2, 22))
+            "1 depth map without ground truth: not scored.\n2 pixels with a negative or not "
+            "finite depth: counted as without estimate.\n"))
+        self.assertEqual(content["overall"]["num_invalid"], 2)
+        self.assertEqual(content["images"][0]["num_estimates"], 22)
 
     def test_bounds_of_textureness(self):
         # The left half of the photograph is flat; the patch reaches two pixels.
@@ -103,8 +104,8 @@ Tolerance  Completeness %  Accuracy %   F1 %
         os.remove(self.path(MAPS + "a.jpg.geometric.bin"))
         self.write_image("gt/a.png", np.full((4, 40), 8000, np.uint16))
         out, content = self.scores(*self.both, "--max_textureness", "0.75,1")
-        self.assertIn("\n\nTextureness below 0.75: coverage 100.0 % of 72 pixels, 100.0 % of those "
-                      "with a measurement\nTolerance  Completeness %", out)
+        self.assertIn("\n\nTextureness below 0.75: coverage 100.0 % of 72 pixels, 100.0 % of "
+                      "those with a measurement\nTolerance  Completeness %", out)
         low, every = content["by_textureness"]
         self.assertEqual((low["max_textureness"], low["score"]["num_maps"],
                           low["score"]["num_measurements"]), (0.75, 1, 4 * 18))

@@ -161,7 +161,7 @@ class EvaluatePointCloudTest(ProgramTest):
             "no point of the scans is within 1.5 m",
             "no point of the reconstruction can be judged"))
         self.write_points(self.cloud, (4e5, 50, 0.25), (4, 0, 0.25))
-        self.expect_warnings("r.ply has coordinates of up to 4e+05", "s.ply is 2e+05 times smaller")
+        self.expect_warnings("r.ply has coordinates of up to 4e+05", "s.ply is 2e+05 times")
 
     def test_output_that_cannot_be_written(self):
         self.write("file")

@@ -1,6 +1,5 @@
 """PLY files of all kinds, MeshLab projects, and those that are damaged."""
 
-import os
 
 import numpy as np
 
@@ -173,7 +172,8 @@ class ProjectTest(TestCase):
         np.testing.assert_allclose(pose, scans[1][1])
 
     def test_what_is_none(self):
-        mesh = '<MeshLabProject><MeshGroup><MLMesh label="a"{}</MLMesh></MeshGroup></MeshLabProject>'
+        mesh = ('<MeshLabProject><MeshGroup><MLMesh label="a"{}</MLMesh></MeshGroup>'
+                "</MeshLabProject>")
         for text, part in (
                 ("", "is not a MeshLab project: "), ("nonsense", "is not a MeshLab project: "),
                 ("<MeshLabProject>\n<MLMesh\n", "line "), ("<COLLADA/>", "not a MeshLab project"),
@@ -192,10 +192,11 @@ class ProjectTest(TestCase):
                 (IDENTITY[:-3] + "1 1", "whose last row is not 0 0 0 1"),
                 (IDENTITY + "000", "whose last row is not 0 0 0 1"),
                 (IDENTITY.replace("1", "1000", 3), "not a rotation"),  # Scale.
-                ("1.001" + IDENTITY[1:], "not a rotation"), ("-1" + IDENTITY[1:], "not a rotation"),
+                ("1.001" + IDENTITY[1:], "not a rotation"),
+                ("-1" + IDENTITY[1:], "not a rotation"),
                 (IDENTITY.replace("1 0", "1 0.001", 1), "not a rotation"),  # Shear.
                 ("0" + IDENTITY[1:], "not a rotation")):
             with self.subTest(matrix=matrix):
-                with self.assertRaisesRegex(Failure, "scans.mlp: scan bad.ply has a pose .*" + part):
+                with self.assertRaisesRegex(Failure, "mlp: scan bad.ply has a pose .*" + part):
                     meshlab_project.read(self.write_project(("good.ply", IDENTITY),
                                                             ("bad.ply", matrix)))
