@@ -142,7 +142,6 @@ def _draw_legend(figure, axes, lines, scale, has_normals, is_metric):
         bar.set_ticks(ticks, labels=[f"{tick:.3g}" for tick in ticks])
         bar.minorticks_off()
         place.set_title(title, loc="left", fontsize=9)
-        place.set_xlim(ticks[0], ticks[-1])
     swatches = [patches.Patch(color=_NO_ESTIMATE, label="no estimate")]
     if is_metric:
         swatches.append(patches.Patch(color=_NO_MEASUREMENT, label="no measurement"))
