@@ -1,4 +1,4 @@
-"""What scripts/evaluate and scripts/eth3d are made of.
+"""What scripts/evaluate, eth3d, evaluate_depth_maps and evaluate_point_cloud are made of.
 
 A run is one method with one seed on one set of photographs. It has a folder,
 OUT/SET/METHOD-SEED, which is a COLMAP workspace with these files beside it:
@@ -21,7 +21,7 @@ import importlib.util
 import sys
 
 # Before anything runs for hours and then cannot be drawn.
-for _module, _package in (("numpy", "numpy"), ("cv2", "opencv"), ("matplotlib", "matplotlib"),
-                          ("PIL", "pil"), ("pydantic", "pydantic")):
+for _module, _package in (("numpy", "numpy"), ("cv2", "opencv"), ("scipy", "scipy"),
+                          ("matplotlib", "matplotlib"), ("pydantic", "pydantic")):
     if importlib.util.find_spec(_module) is None:
         sys.exit(f"ERROR: python3-{_package} is missing; run scripts/install_deps.sh")

@@ -48,13 +48,10 @@ class CloudScore(schemas.Model):
             if abs(tolerance - value) < 1e-9), None)
 
 
-def default_evaluator(bin_dir=None):
-    """Path of evaluate_point_cloud, which may not be built yet."""
-    return os.path.join(bin_dir or machine.default_bin_dir(), "evaluate_point_cloud")
-
-
-def named_evaluator(path):
-    """Absolute path of a program that the user names. Raises Failure if it is none."""
+def choose_evaluator(path=None):
+    """Absolute path of ours, or of a program that the user names. Raises Failure if it is none."""
+    if path is None:
+        return os.path.join(machine.ROOT, "scripts", "evaluate_point_cloud")
     if not (os.path.isfile(path) and os.access(path, os.X_OK)):
         raise Failure(f"--eth3d_evaluator: {path} is no program")
     return os.path.abspath(path)
@@ -82,8 +79,7 @@ def parse(text, tolerances):
 
 
 def _read(folder):
-    return files.read_json(os.path.join(folder, "cloud_scores.json"),
-                           Dict[str, CloudScore]) or {}
+    return files.read_json(os.path.join(folder, "cloud_scores.json"), Dict[str, CloudScore]) or {}
 
 
 def load(folder):
@@ -127,7 +123,6 @@ class ScoreCloud(Step):
                  "--ground_truth_mlp_path", self._scans, *self._options()]]
 
     def run(self):
-        machine.find_program(*os.path.split(self._evaluator))
         log = os.path.join(self._folder, f"cloud_scores_{self._cloud}.log")
         if os.path.exists(log):
             os.remove(log)

@@ -54,11 +54,8 @@ class View:
 
 def rotation_of(quaternion):
     """Rotation matrix, (3, 3), of (w, x, y, z), which need not have unit length."""
-    w, x, y, z = np.asarray(quaternion, float) / np.linalg.norm(quaternion)
-    return np.array((
-        (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
-        (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
-        (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y))))
+    from scipy.spatial.transform import Rotation  # Takes a while.
+    return Rotation.from_quat(np.roll(quaternion, -1)).as_matrix()
 
 
 def _lines(path):

@@ -1,11 +1,13 @@
-"""What the command lines of scripts/evaluate and scripts/eth3d share."""
+"""What the command lines of the scripts share."""
 
 import argparse
+import io
+import math
 import signal
 import sys
 
 from . import processes
-from .experiment import check_method
+from .methods import check_method
 
 
 class Parser(argparse.ArgumentParser):
@@ -27,7 +29,7 @@ class Parser(argparse.ArgumentParser):
 
 
 def list_of(kind, name, accepts=lambda value: True):
-    """A parser of values that are separated by commas; each counts once."""
+    """A parser of values that are separated by commas."""
     def parse(text):
         try:
             values = [kind(word) for word in text.split(",")]
@@ -36,13 +38,34 @@ def list_of(kind, name, accepts=lambda value: True):
         if not values or not all(map(accepts, values)):
             raise argparse.ArgumentTypeError(
                 f"'{text}' is not a list of {name}, separated by commas")
-        return list(dict.fromkeys(values))
+        return values
     return parse
 
 
-texts = list_of(str, "names", bool)
-whole_numbers = list_of(int, "whole numbers", lambda value: 0 <= value < 1e9)
+def once(parse):
+    """A parser of the same values, of which each counts once."""
+    return lambda text: list(dict.fromkeys(parse(text)))
+
+
+texts = once(list_of(str, "names", bool))
+whole_numbers = once(list_of(int, "whole numbers", lambda value: 0 <= value < 1e9))
 positive_numbers = list_of(float, "positive numbers", lambda value: 0 < value < 1e9)
+
+
+def number(what, accepts):
+    """A parser of one finite number; what: which ones are accepted, in words."""
+    def parse(text):
+        try:
+            value = float(text)
+        except ValueError:
+            value = math.nan
+        if not (math.isfinite(value) and accepts(value)):
+            raise argparse.ArgumentTypeError(f"it must be {what}, not {text}")
+        return value
+    return parse
+
+
+positive_number = number("a positive number", lambda value: value > 0)
 
 
 def whole_number(least):
@@ -67,17 +90,27 @@ def methods(text):
     return list(map(method, texts(text)))
 
 
-def run(main):
-    """The exit status of a program: what main() returns, unless it fails."""
+def run(main, advice="the same command goes on from here"):
+    """The exit status of a program: what main() returns, unless it fails.
+
+    advice: what to do where the program was stopped.
+    """
     # As by Ctrl-C, so that running programs end in order.
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     # Ends in silence where nobody reads on, as in "scripts/evaluate ... | head".
     signal.signal(signal.SIGPIPE, signal.SIG_DFL)
+    if isinstance(sys.stdout, io.TextIOWrapper):  # Names of files may be no text.
+        sys.stdout.reconfigure(errors="surrogateescape")
+    status = 1
     try:
         return main()
-    except (processes.Failure, OSError) as error:
-        print(f"ERROR: {error}", file=sys.stderr)
-        return 1
+    except processes.Failure as error:
+        status, text = error.exit_status, error
+    except OSError as error:
+        text = error
+    except MemoryError:
+        text = "there is not enough memory (docs/evaluation.md says how much it takes)"
     except (KeyboardInterrupt, processes.Interrupted):
-        print("ERROR: stopped; the same command goes on from here", file=sys.stderr)
-        return 130
+        status, text = 130, f"stopped; {advice}"
+    print(f"ERROR: {text}", file=sys.stderr)
+    return status

@@ -10,57 +10,66 @@ import re
 import cv2
 import numpy as np
 
-from . import files
+from . import files, images
 from .processes import Failure
 
 PNG_STEPS_PER_METRE = 4000
 
 
-def _bytes(path):
-    try:
-        with open(path, "rb") as file:
-            return file.read()
-    except OSError as error:
-        raise Failure(f"{path} cannot be read: {error.strerror}") from error
+def is_depth(values):
+    return np.isfinite(values) & (values > 0)
 
 
 def _known(depth):
     """What is no positive number becomes 0."""
-    return np.where(np.isfinite(depth) & (depth > 0), depth, 0).astype(np.float32)
+    return np.where(is_depth(depth), depth, 0).astype(np.float32)
 
 
-def read_png(path):
+def read_png(path, steps_per_metre=PNG_STEPS_PER_METRE):
     """A 16-bit grey PNG, in metres."""
-    encoded = cv2.imdecode(np.frombuffer(_bytes(path), np.uint8), cv2.IMREAD_UNCHANGED)
-    if encoded is None or encoded.dtype != np.uint16 or encoded.ndim != 2:
-        raise Failure(f"{path} is no 16-bit grey PNG")
-    return (encoded / np.float32(PNG_STEPS_PER_METRE)).astype(np.float32)
+    values = images.read(path, cv2.IMREAD_UNCHANGED)
+    if values.dtype != np.uint16 or values.ndim != 2:
+        raise Failure(f"{path} is not a 16-bit grey image")
+    return (values.astype(np.float64) / steps_per_metre).astype(np.float32)
+
+
+def read_map(path, channels=1):
+    """One of COLMAP's depth maps, or with 3 channels normal maps, as it stands in the file.
+
+    Normals are of shape (height, width, 3).
+    """
+    data = files.read_bytes(path)
+    header = re.match(rb"0*([1-9]\d{0,6})&0*([1-9]\d{0,6})&0*([1-9]\d{0,6})&", data)
+    if header is None:
+        raise Failure(f"{path} is not a COLMAP depth or normal map")
+    width, height, found = map(int, header.groups())
+    if found != channels:
+        raise Failure(f"{path} has {found} channels, but {channels} expected")
+    size, needed = len(data) - header.end(), 4 * width * height * channels
+    if size != needed:
+        raise Failure(f"{path} is {'truncated' if size < needed else 'too long'}: {size} bytes of "
+                      f"values where the size {width}x{height}x{channels} needs {needed}")
+    values = np.frombuffer(data, "<f4", offset=header.end()).reshape(channels, height, width)
+    return values[0] if channels == 1 else np.moveaxis(values, 0, 2)
 
 
 def read_bin(path):
-    """One of COLMAP's depth maps."""
-    data = _bytes(path)
-    header = re.match(rb"(\d+)&(\d+)&1&", data)
-    if header is None:
-        raise Failure(f"{path} is no depth map of COLMAP's")
-    width, height = int(header[1]), int(header[2])
-    if len(data) != header.end() + 4 * width * height:
-        raise Failure(f"{path} has not the size that its header says")
-    return _known(np.frombuffer(data, "<f4", offset=header.end()).reshape(height, width))
+    """The depths of one of COLMAP's maps."""
+    return _known(read_map(path))
 
 
 def read_raw(path, width, height):
     """One of ETH3D's depth maps: nothing but little-endian float32, row by row."""
-    data = _bytes(path)
+    data = files.read_bytes(path)
     if len(data) != 4 * width * height:
         raise Failure(f"{path} has {len(data)} bytes, but {width}x{height} depths need "
                          f"{4 * width * height}")
     return _known(np.frombuffer(data, "<f4").reshape(height, width))
 
 
-def read(path):
-    """A map in any format of this project, by its extension."""
-    return read_png(path) if path.endswith(".png") else read_bin(path)
+def read(path, steps_per_metre=PNG_STEPS_PER_METRE):
+    """Measured depth in either format of this project, by its extension."""
+    return read_png(path, steps_per_metre) if path.endswith(".png") else read_bin(path)
 
 
 def find(folder, name):

@@ -5,7 +5,7 @@
 
 DATA has sparse/ (a COLMAP text model) and gt_depth/ (see examples/room/README.md). One
 file OUT/scanN.ply per scanner and OUT/scan_alignment.mlp, a MeshLab project with their
-poses, are what build/bin/evaluate_point_cloud takes as the truth.
+poses, are what scripts/evaluate_point_cloud takes as the truth.
 
 Every point is a pixel that was measured, on the ray through its centre. Nothing is
 interpolated, so there are no points in the air between a near and a far surface, and
@@ -18,7 +18,6 @@ between its beams cannot be judged, right or wrong; OUT/scans.json says how wide
 would have to be to leave no gaps (evaluate_point_cloud --beam_divergence_halfangle_deg).
 """
 
-import argparse
 import os
 import sys
 from typing import Optional
@@ -27,7 +26,8 @@ import numpy as np
 
 if not __package__:  # Started as a program.
     sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
-from evaluation import colmap_model, depth_maps, files, schemas
+from evaluation import (colmap_model, command_line, depth_maps, files, meshlab_project,
+                        point_clouds, schemas)
 from evaluation.processes import Failure
 
 # From a camera's frame (x right, y down, z forward) to the scanner's.
@@ -48,8 +48,7 @@ def scan_points(view, depth):
     height, width = depth.shape
     scale = (view.camera.width / width, view.camera.height / height)
     rows, columns = np.nonzero(depth > 0)
-    u, v = colmap_model.unproject(view.camera, (columns + 0.5) * scale[0],
-                                  (rows + 0.5) * scale[1])
+    u, v = colmap_model.unproject(view.camera, (columns + 0.5) * scale[0], (rows + 0.5) * scale[1])
     z = depth[rows, columns].astype(np.float64)
     points = np.stack((u * z, v * z, z), axis=1) @ SCANNER_FROM_CAMERA.T
     return points[np.isfinite(points).all(axis=1)]
@@ -80,26 +79,6 @@ def beam_halfangle(view, depth):
     """Half the angle in degrees between the rays of neighbouring pixels in the centre."""
     return float(np.degrees(np.arctan(0.5 * view.camera.width / depth.shape[1]
                                       / view.camera.pinhole[0])))
-
-
-def write_ply(path, points):
-    """Positions, (n, 3), as binary PLY with 32-bit floats."""
-    header = ("ply\nformat binary_little_endian 1.0\n"
-              f"element vertex {len(points)}\n"
-              "property float x\nproperty float y\nproperty float z\nend_header\n")
-    files.write_bytes(path, header.encode("ascii"),
-                      np.ascontiguousarray(points, "<f4").tobytes())
-
-
-def write_project(path, scans):
-    """A MeshLab project of (file name beside the project, matrix to the world) pairs."""
-    lines = ["<!DOCTYPE MeshLabDocument>", "<MeshLabProject>", " <MeshGroup>"]
-    for name, matrix in scans:
-        lines += [f'  <MLMesh label="{name}" filename="{name}">', "   <MLMatrix44>"]
-        lines += [" ".join(f"{value:.12g}" for value in row) + " " for row in matrix]
-        lines += ["</MLMatrix44>", "  </MLMesh>"]
-    lines += [" </MeshGroup>", " <RasterGroup/>", "</MeshLabProject>"]
-    files.write_text(path, "\n".join(lines) + "\n")
 
 
 def choose_scanners(views, names=None):
@@ -140,7 +119,7 @@ def make_scans(data, out, names=None, voxel_size=0.0):
         if len(points) == 0:
             continue
         name = f"scan{len(scans) + 1}.ply"
-        write_ply(os.path.join(out, name), points)
+        point_clouds.write_ply(os.path.join(out, name), points)
         scans.append((name, scanner_to_world(view)))
         angles.append(beam_halfangle(view, depth))
         counts.append({"scan": name, "photograph": view.name, "points": len(points)})
@@ -150,7 +129,7 @@ def make_scans(data, out, names=None, voxel_size=0.0):
                      {"beam_divergence_halfangle_deg": max(angles), "scans": counts,
                       "made_from": _source(data)})
     project = os.path.join(out, "scan_alignment.mlp")
-    write_project(project, scans)
+    meshlab_project.write(project, scans)
     return project
 
 
@@ -170,20 +149,16 @@ def are_of_other_data(data, out):
 
 
 def main():
-    parser = argparse.ArgumentParser(usage=__doc__)
+    parser = command_line.Parser(usage=__doc__)
     parser.add_argument("data")
     parser.add_argument("out")
-    parser.add_argument("--scanners", help="names of photographs, separated by commas")
-    parser.add_argument("--voxel_size", type=float, default=0.0)
+    parser.add_argument("--scanners", type=command_line.texts)
+    parser.add_argument("--voxel_size", default=0.0,
+                        type=command_line.number("at least 0", lambda value: value >= 0))
     arguments = parser.parse_args()
-    if arguments.voxel_size < 0:
-        sys.exit("ERROR: --voxel_size must not be negative")
-    names = arguments.scanners.split(",") if arguments.scanners else None
-    try:
-        print(make_scans(arguments.data, arguments.out, names, arguments.voxel_size))
-    except (OSError, Failure) as error:
-        sys.exit(f"ERROR: {error}")
+    print(make_scans(arguments.data, arguments.out, arguments.scanners, arguments.voxel_size))
+    return 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(command_line.run(main, "start it again"))

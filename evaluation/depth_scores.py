@@ -1,13 +1,14 @@
-"""Scores of depth maps against measured depth, by evaluate_depth_maps.
+"""Scores of depth maps against measured depth.
 
-depth_scores.json is what that program writes with --json, and "made_from", which says
+depth_scores.json is what evaluate_depth_maps writes with --json, and "made_from", which says
 of which maps and measurements, so that scores of others are not taken for theirs.
 """
 
+import contextlib
 import os
 from typing import List, Optional
 
-from . import files, machine, processes, schemas
+from . import evaluate_depth_maps, files, machine, processes, schemas
 from .schemas import Number, Text
 from .steps import Step
 
@@ -85,13 +86,12 @@ class ScoreDepth(Step):
     """FOLDER/depth_scores.json of a workspace."""
     name = "scores of depth maps"
 
-    def __init__(self, folder, truth, tolerances=(), relative_tolerances=(), bin_dir=None):
+    def __init__(self, folder, truth, tolerances=(), relative_tolerances=()):
         """truth: folder of measured depth; tolerances: more than those above."""
         self._folder = folder
         self._truth = truth
         self._tolerances = sorted({*TOLERANCES, *tolerances})
         self._relative = sorted({*RELATIVE_TOLERANCES, *relative_tolerances})
-        self._bin_dir = bin_dir or machine.default_bin_dir()
         self._path = os.path.join(folder, "depth_scores.json")
 
     def is_done(self):
@@ -102,18 +102,19 @@ class ScoreDepth(Step):
                 and all(map(scores.below, TEXTURENESS)))
 
     def commands(self):
-        return [[os.path.join(self._bin_dir, "evaluate_depth_maps"),
+        return [[os.path.join(machine.ROOT, "scripts", "evaluate_depth_maps"),
                  "--workspace_path", self._folder, "--ground_truth_path", self._truth,
                  "--tolerances", processes.list_text(self._tolerances),
                  "--relative_tolerances", processes.list_text(self._relative),
                  "--max_textureness", processes.list_text(TEXTURENESS),
-                 "--json", self._path + ".raw"]]
+                 "--json", self._path]]
 
     def run(self):
-        machine.find_program(self._bin_dir, "evaluate_depth_maps")
-        processes.run(self.commands()[0], os.path.join(self._folder, "depth_scores.log"))
-        scores = files.read_json(self._path + ".raw")
-        scores["made_from"] = {"maps": files.fingerprint(_maps(self._folder)),
-                               "truth": files.fingerprint(self._truth)}
-        files.write_json(self._path, schemas.check(scores, DepthScores, self._path + ".raw"))
-        os.remove(self._path + ".raw")
+        log = os.path.join(self._folder, "depth_scores.log")
+        with open(log, "w", encoding="utf-8", errors="surrogateescape") as file, \
+                contextlib.redirect_stdout(file):
+            scores = evaluate_depth_maps.evaluate(evaluate_depth_maps.parse(
+                self.commands()[0][1:]))
+        files.write_json(self._path, {
+            **scores, "made_from": {"maps": files.fingerprint(_maps(self._folder)),
+                                    "truth": files.fingerprint(self._truth)}})

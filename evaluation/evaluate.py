@@ -66,8 +66,8 @@ def _parse(words):
     add("image_size", command_line.whole_number(1))
     add("every", command_line.whole_number(1))
     add("sources", command_line.whole_number(1))
-    add("tolerances", command_line.positive_numbers)
-    add("relative_tolerances", command_line.positive_numbers)
+    add("tolerances", command_line.once(command_line.positive_numbers))
+    add("relative_tolerances", command_line.once(command_line.positive_numbers))
     parser.add_argument("--compare", type=_comparison, action="append", default=[])
     add("views", command_line.texts)
     add("num_views", command_line.whole_number(0), 1)
@@ -130,27 +130,18 @@ def _programs(arguments):
     return bin_dir
 
 
-def _evaluator(arguments, bin_dir):
-    """The program that scores points, None if they are not to be scored."""
-    if arguments.no_clouds:
-        return None
-    if arguments.eth3d_evaluator:
-        return cloud_scores.named_evaluator(arguments.eth3d_evaluator)
-    return cloud_scores.default_evaluator(bin_dir)
-
-
-def _write_report(experiments, arguments, bin_dir, failures):
+def _write_report(experiments, arguments, failures):
     out = arguments.out
     path = os.path.join(out, "report.md")
     reports = [report.SetReport(planned, out, out, os.path.join(out, "figures"),
-                                os.path.join(out, "tables"), bin_dir) for planned in experiments]
+                                os.path.join(out, "tables")) for planned in experiments]
     report.write_report(path, reports, failures,
                         ["Points were not scored, as asked."] if arguments.no_clouds else [])
     print(f"Report: {path}")
 
 
-def _write_page(page, arguments, bin_dir):
-    path, missing = page.write(arguments.out, bin_dir, arguments.only)
+def _write_page(page, arguments):
+    path, missing = page.write(arguments.out, arguments.only)
     if missing:
         print("Missing:\n" + "\n".join(missing))
     print(f"Page: {path}")
@@ -169,7 +160,8 @@ def main(words=None):
         experiments = _planned(page, arguments.only)
     else:
         experiments = _experiments(arguments)
-    evaluator = _evaluator(arguments, bin_dir)
+    evaluator = (None if arguments.no_clouds
+                 else cloud_scores.choose_evaluator(arguments.eth3d_evaluator))
     # A report may be made while a run goes on.
     is_reading = arguments.dry_run or arguments.report_only
     jobs, failures = [], []
@@ -180,7 +172,7 @@ def main(words=None):
             failures = steps.perform(jobs, arguments.dry_run)
         if not arguments.dry_run:
             if page:
-                _write_page(page, arguments, bin_dir)
+                _write_page(page, arguments)
             else:
-                _write_report(experiments, arguments, bin_dir, failures)
+                _write_report(experiments, arguments, failures)
     return steps.exit_status(failures, len(jobs))

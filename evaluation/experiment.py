@@ -8,9 +8,9 @@ from typing import List, Optional, Tuple
 
 import pydantic
 
-from . import (cloud_scores, depth_maps, depth_scans, depth_scores, links, machine, processes,
-               record, schemas, stereo_run)
-from .methods import METHODS
+from . import (cloud_scores, depth_maps, depth_scans, depth_scores, machine, processes, record,
+               schemas, stereo_run, workspaces)
+from .methods import METHODS, check_method
 from .processes import Failure
 from .schemas import Positive, Text
 from .steps import Job, Step
@@ -18,13 +18,6 @@ from .steps import Job, Step
 Whole = pydantic.conint(strict=True, ge=0)
 Count = pydantic.conint(strict=True, ge=1)
 Tolerances = pydantic.conlist(Positive, min_items=1)
-
-
-def check_method(name):
-    """The name of a method. Raises ValueError if there is none."""
-    if name not in METHODS:
-        raise ValueError(f"there is no method {name}; there are " + ", ".join(METHODS))
-    return name
 
 
 def methods_validator():
@@ -107,7 +100,7 @@ def check(experiment):
     if not (os.path.isdir(truth) or experiment.scans()):
         raise Failure(f"{data} has neither gt_depth/ nor a MeshLab project in scans/, so that "
                       "nothing can be scored")
-    photographs = links.photographs(data, experiment.every)
+    photographs = workspaces.photographs(data, experiment.every)
     if len(photographs) < 2:
         raise Failure(f"{data}/images has fewer than two photographs to use")
     if os.path.isdir(truth) and not any(depth_maps.find(truth, name) for name in photographs):
@@ -173,7 +166,7 @@ class LinkComparison(Step):
         return [f"# {self._folder}: links to {path}" for path in self._paths]
 
     def run(self):
-        photographs = links.photographs(self._experiment.data, self._experiment.every)
+        photographs = workspaces.photographs(self._experiment.data, self._experiment.every)
         known = record.load(self._folder)
         if isinstance(known, record.RunRecord):
             raise Failure(f"{self._folder} has results of this program, which are no links to "
@@ -187,10 +180,11 @@ class LinkComparison(Step):
             options=[], compare=self._paths, photographs=len(photographs))
         for path in self._paths:
             if os.path.isdir(path):
-                links.make_view_workspace(self._experiment.data, path, self._folder, photographs)
+                workspaces.make_view_workspace(self._experiment.data, path, self._folder,
+                                               photographs)
                 content.views, content.image_size = stereo_run.describe_maps(self._folder)
             else:
-                links.link(path, os.path.join(self._folder, "fused.ply"))
+                workspaces.link(path, os.path.join(self._folder, "fused.ply"))
         record.save(self._folder, content)
 
 
@@ -207,7 +201,7 @@ def jobs(experiment, out, bin_dir, evaluator=None):
         if has_maps and os.path.isdir(experiment.truth()):
             steps.append(depth_scores.ScoreDepth(
                 folder, experiment.truth(), experiment.tolerances,
-                experiment.relative_tolerances, bin_dir))
+                experiment.relative_tolerances))
         if evaluator is not None:
             steps += [cloud_scores.ScoreCloud(folder, name, scans, evaluator,
                                               experiment.tolerances, options) for name in clouds]

@@ -6,7 +6,6 @@ import json
 import os
 import zlib
 
-from . import schemas
 from .processes import Failure
 
 
@@ -26,6 +25,15 @@ def replacing(path):
         raise Failure(f"{path} cannot be written: {error.strerror}") from error
 
 
+def read_bytes(path):
+    """All of a file. Raises Failure if it cannot be read."""
+    try:
+        with open(path, "rb") as file:
+            return file.read()
+    except OSError as error:
+        raise Failure(f"{path} cannot be read: {error.strerror}") from error
+
+
 def write_bytes(path, *parts):
     """Writes the parts one after the other. Raises Failure if it cannot."""
     with replacing(path) as new, open(new, "wb") as file:
@@ -38,8 +46,8 @@ def write_text(path, text):
 
 
 def write_json(path, value):
-    """value: plain data or a model."""
-    if isinstance(value, schemas.Model):
+    """value: plain data or a model (schemas.py)."""
+    if not isinstance(value, (dict, list)):
         value = value.dict()
     write_text(path, json.dumps(value, indent=2, ensure_ascii=False) + "\n")
 
@@ -56,7 +64,10 @@ def read_json(path, model=None):
         return None
     except (OSError, ValueError) as error:
         raise Failure(f"{path} cannot be read ({error}); remove it to make it anew") from error
-    return content if model is None else schemas.check(content, model, path)
+    if model is None:
+        return content
+    from . import schemas  # Takes a while, and programs that only write need it not.
+    return schemas.check(content, model, path)
 
 
 def lock(folder, name):

@@ -12,66 +12,47 @@ _PAPER = _COLMAP + _TAPA + ["--PatchMatchStereo.tapa_completion", "0",
                   "--PatchMatchStereo.tapa_min_textureness", "0.5"]
 
 
-def _without(part):
-    return ["--PatchMatchStereo.tapa_" + part, "0"]
-
-
 _FULL_WINDOW = ["--PatchMatchStereo.first_window_step", "1"]
 _FEWER_ITERATIONS = [*_FULL_WINDOW, "--PatchMatchStereo.num_iterations", "2"]
 _SPARSE_WINDOW = ["--PatchMatchStereo.num_iterations", "2", "--PatchMatchStereo.window_step", "2"]
 
-# Options of patch_match_stereo by name. plain and tapa are what this program does,
-# colmap and paper what COLMAP does and what the paper describes; the others leave a
-# part out, or take more or less time.
-METHODS = {
-    "plain": [],
-    "tapa": _TAPA,
-    "colmap": _COLMAP,
-    "colmap-tapa": _COLMAP + _TAPA,
-    "plain-full": _FULL_WINDOW,
-    "tapa-full": _TAPA + _FULL_WINDOW,
-    "plain-2+2": _FEWER_ITERATIONS,
-    "tapa-2+2": _TAPA + _FEWER_ITERATIONS,
-    "plain-sparse": _SPARSE_WINDOW,
-    "tapa-sparse": _TAPA + _SPARSE_WINDOW,
-    "tapa-weights": _TAPA + _without("texture_weighting"),
-    "tapa-coarse": _TAPA + _without("coarse_superpixels"),
-    "tapa-fine": _TAPA + _without("fine_superpixels"),
-    "tapa-refinement": _TAPA + _without("refinement"),
-    "paper": _PAPER,
-    "paper-weights": _PAPER + _without("texture_weighting"),
-    "paper-coarse": _PAPER + _without("coarse_superpixels"),
-    "paper-fine": _PAPER + _without("fine_superpixels"),
-    "paper-refinement": _PAPER + _without("refinement"),
+# By name what a reader sees and the options of patch_match_stereo. plain and tapa are what
+# this program does, colmap and paper what COLMAP does and what the paper describes; the others
+# leave a part out, or take more or less time.
+_ALL = {
+    "plain": ("plain", []),
+    "tapa": ("TAPA", _TAPA),
+    "colmap": ("COLMAP", _COLMAP),
+    "colmap-tapa": ("TAPA, 5 + 5 iterations, 15 samples", _COLMAP + _TAPA),
+    "paper": ("paper's TAPA", _PAPER),
 }
+for _name, _label, _options in (
+        ("full", "full windows", _FULL_WINDOW),
+        ("2+2", "2 + 2 iterations, full windows", _FEWER_ITERATIONS),
+        ("sparse", "2 + 2 iterations, window step 2", _SPARSE_WINDOW)):
+    for _base in ("plain", "tapa"):
+        _ALL[f"{_base}-{_name}"] = f"{_ALL[_base][0]}, {_label}", _ALL[_base][1] + _options
+for _name, _label, _option in (("weights", "weights", "texture_weighting"),
+                               ("coarse", "coarse superpixels", "coarse_superpixels"),
+                               ("fine", "fine superpixels", "fine_superpixels"),
+                               ("refinement", "refinement", "refinement")):
+    for _base in ("tapa", "paper"):
+        _ALL[f"{_base}-{_name}"] = (f"{_ALL[_base][0]} without {_label}", [
+            *_ALL[_base][1], "--PatchMatchStereo.tapa_" + _option, "0"])
 
-# What a reader sees.
-LABELS = {
-    "plain": "plain",
-    "tapa": "TAPA",
-    "colmap": "COLMAP",
-    "colmap-tapa": "TAPA, 5 + 5 iterations, 15 samples",
-    "plain-full": "plain, full windows",
-    "tapa-full": "TAPA, full windows",
-    "plain-2+2": "plain, 2 + 2 iterations, full windows",
-    "tapa-2+2": "TAPA, 2 + 2 iterations, full windows",
-    "plain-sparse": "plain, 2 + 2 iterations, window step 2",
-    "tapa-sparse": "TAPA, 2 + 2 iterations, window step 2",
-    "tapa-weights": "TAPA without weights",
-    "tapa-coarse": "TAPA without coarse superpixels",
-    "tapa-fine": "TAPA without fine superpixels",
-    "tapa-refinement": "TAPA without refinement",
-    "paper": "paper's TAPA",
-    "paper-weights": "paper's TAPA without weights",
-    "paper-coarse": "paper's TAPA without coarse superpixels",
-    "paper-fine": "paper's TAPA without fine superpixels",
-    "paper-refinement": "paper's TAPA without refinement",
-}
+METHODS = {name: options for name, (_, options) in _ALL.items()}
+
+
+def check_method(name):
+    """The name of a method. Raises ValueError if there is none."""
+    if name not in METHODS:
+        raise ValueError(f"there is no method {name}; there are " + ", ".join(METHODS))
+    return name
+
 
 # The columns of the paper's Table 2: with the paper's own method, and with what
 # this program does.
-ABLATION = ["colmap", "paper-weights", "paper-coarse", "paper-fine",
-            "paper-refinement", "paper"]
+ABLATION = ["colmap", "paper-weights", "paper-coarse", "paper-fine", "paper-refinement", "paper"]
 TAPA_ABLATION = ["plain", *(name.replace("paper", "tapa") for name in ABLATION[1:])]
 
 
@@ -89,4 +70,4 @@ FUSION_LOW = fusion_options(0.5)
 
 def label(method):
     """The name of a method, or of something else to compare with, in words."""
-    return LABELS.get(method, method)
+    return _ALL[method][0] if method in _ALL else method

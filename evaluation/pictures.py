@@ -1,80 +1,54 @@
 """Pictures of views: photograph, depth, normals, measured depth and error."""
 
 import os
-import shutil
 
-from . import depth_maps, files, links, machine, processes
+import cv2
+
+from . import depth_maps, files, images, view_picture, workspaces
 from .methods import METHODS, label
 
 _WIDTH = 800
 _QUALITY = 75
 
 
-def _draw_view(data, maps, name, bin_dir):
-    """Draws a view with evaluate_depth_maps into MAPS/pictures. Returns its path.
+def _draw_view(data, maps, view, title):
+    """Draws a view of the workspace MAPS into MAPS/pictures. Returns its path.
 
-    maps: the workspace whose maps are drawn. A picture that is newer than what
-    it shows is kept.
+    A picture that is newer than what it shows is kept.
     """
-    truth = os.path.join(data, "gt_depth")
-    folder = os.path.join(maps, "pictures")
-    picture = os.path.splitext(name)[0] + ".png"
-    path = os.path.join(folder, picture)
-    if not files.is_newer(path, links.find_map(maps, name), depth_maps.find(truth, name)):
-        workspace = os.path.join(folder, "workspace")
-        shutil.rmtree(workspace, ignore_errors=True)
-        links.make_view_workspace(data, maps, workspace, [name])
-        command = [machine.find_program(bin_dir or machine.default_bin_dir(),
-                                        "evaluate_depth_maps"),
-                   "--workspace_path", workspace, "--pictures", os.path.join(workspace, "new")]
-        if os.path.isdir(truth):
-            command += ["--ground_truth_path", truth]
-        processes.run(command, os.path.join(folder, "pictures.log"))
-        os.makedirs(os.path.dirname(path), exist_ok=True)
-        os.replace(os.path.join(workspace, "new", picture), path)
-        shutil.rmtree(workspace)
+    truth = depth_maps.find(os.path.join(data, "gt_depth"), view.name)
+    path = os.path.join(maps, "pictures", os.path.splitext(view.name)[0] + ".png")
+    if not files.is_newer(path, view.depth, truth):
+        view_picture.draw(path, view, depth_maps.read_map(view.depth),
+                          depth_maps.read(truth) if truth else None, title)
     return path
 
 
-def _stack(paths, titles, output):
-    """Writes a JPEG with pictures one below the other, a title above each."""
-    from PIL import Image, ImageDraw, ImageFont
-    import matplotlib
-    # matplotlib's own font, so that all machines write the same.
-    font = ImageFont.truetype(os.path.join(matplotlib.get_data_path(), "fonts", "ttf",
-                                           "DejaVuSans-Bold.ttf"), 16)
-    margin = 26
-    pictures = []
-    for path in paths:
-        picture = Image.open(path).convert("RGB")
-        height = max(1, round(picture.height * _WIDTH / picture.width))
-        pictures.append(picture.resize((_WIDTH, height), Image.LANCZOS))
-    height = sum(picture.height + margin for picture in pictures)
-    canvas = Image.new("RGB", (_WIDTH, height), "white")
-    draw = ImageDraw.Draw(canvas)
-    y = 0
-    for picture, title in zip(pictures, titles):
-        draw.text((8, y + 4), title, fill="black", font=font)
-        canvas.paste(picture, (0, y + margin))
-        y += margin + picture.height
-    with files.replacing(output) as new:
-        canvas.save(new, format="JPEG", quality=_QUALITY, optimize=True)
+def _stack(paths, output):
+    """Writes a JPEG with pictures one below the other."""
+    pictures = [images.read_color(path) for path in paths]
+    stacked = cv2.vconcat([cv2.resize(
+        picture, (_WIDTH, max(1, round(picture.shape[0] * _WIDTH / picture.shape[1]))),
+        interpolation=cv2.INTER_AREA) for picture in pictures])
+    quality = [cv2.IMWRITE_JPEG_QUALITY, _QUALITY, cv2.IMWRITE_JPEG_OPTIMIZE, 1]
+    files.write_bytes(output, cv2.imencode(".jpg", stacked, quality)[1].tobytes())
 
 
-def draw_comparison(output, data, by_method, methods, view, bin_dir=None):
+def draw_comparison(output, data, by_method, methods, name):
     """One view with the maps of several methods, one below the other.
 
     by_method: what results.load_set() returns; of several seeds the first is drawn.
     Returns the caption, None if no method has maps of this view.
     """
-    folders = {method: run.folder for method in chosen_methods(methods)
-               for run in by_method.get(method, [])[:1] if links.find_map(run.folder, view)}
-    if not folders:
+    runs = {method: run for method in chosen_methods(methods)
+            for run in by_method.get(method, [])[:1]}
+    views = {method: workspaces.find_view(data, run.folder, name) for method, run in runs.items()}
+    paths = {label(method): _draw_view(data, runs[method].folder, view, label(method))
+             for method, view in views.items() if view}
+    if not paths:
         return None
-    titles = [label(method) for method in folders]
-    _stack([_draw_view(data, folder, view, bin_dir) for folder in folders.values()], titles,
-           output)
-    return (f"**{view}.** From above: {', '.join(titles)}. Black in the depth is \"no "
+    _stack(paths.values(), output)
+    return (f"**{name}.** From above: {', '.join(paths)}. Black in the depth is \"no "
             "estimate\"; the error is relative to the true depth, from green (0.1 % and less) "
             "over yellow (1 %) to red (10 % and more).")
 
@@ -87,6 +61,6 @@ def chosen_methods(methods):
 
 def choose_views(data, every, count):
     """Names of count photographs, spread evenly over those that take part."""
-    names = links.photographs(data, every)
+    names = workspaces.photographs(data, every)
     count = min(count, len(names))
     return [names[(2 * i + 1) * len(names) // (2 * count)] for i in range(count)]

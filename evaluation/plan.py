@@ -119,7 +119,7 @@ class Plan:
         return (self._folder if all(report.SetReport(planned, out, "", "").by_method
                                     for planned in self.sets.values()) else out)
 
-    def write(self, out, bin_dir=None, only=None):
+    def write(self, out, only=None):
         """Writes the page from what is in OUT.
 
         only: names of sets; the page is about these alone, and goes to OUT.
@@ -135,7 +135,7 @@ class Plan:
                 parts.append("#" * section.level + f" {section.title}\n")
             parts.append(section.text.strip() and section.text.strip() + "\n")
             if section.set is not None:
-                parts += self._results(section, out, folder, bin_dir)
+                parts += self._results(section, out, folder)
         text = "\n".join(part for part in parts if part.strip())
         files.write_text(path, self._move_links(text, folder))
         return path, [line for name, planned in self.sets.items() if not only or name in only
@@ -147,12 +147,12 @@ class Plan:
         return text if above == "." else re.sub(
             r"\]\(([\w./-]+\.(?:md|toml)[)#])", rf"]({above}/\1", text)
 
-    def _results(self, section, out, folder, bin_dir):
+    def _results(self, section, out, folder):
         planned = self.sets[section.set]
         parts = [f"    {experiment.command_text(planned)}\n"] if section.command else []
         shown = report.SetReport(section.view_of(planned), out, folder,
                                  os.path.join(folder, self._page.images),
-                                 os.path.join(out, "tables"), bin_dir)
+                                 os.path.join(out, "tables"))
         if not shown.by_method:
             return parts + [f"*`{planned.name}` has not been run.*\n"]
         parts += [shown.block(kind) for kind in section.show]

@@ -11,6 +11,7 @@ import time
 
 class Failure(Exception):
     """Something went wrong. Its text is one line for the user."""
+    exit_status = 1
 
 
 class Interrupted(Exception):
@@ -120,8 +121,7 @@ def last_output(log):
             lines = file.read().splitlines()
     except FileNotFoundError:
         return []
-    begin = max((i for i, line in enumerate(lines) if line.startswith("$ ")),
-                default=-1)
+    begin = max((i for i, line in enumerate(lines) if line.startswith("$ ")), default=-1)
     return lines[begin + 1:]
 
 

@@ -143,8 +143,7 @@ def load(folder):
     if content is None and not os.path.exists(_path(folder)):
         return None
     is_comparison = isinstance(content, dict) and "compare" in content
-    return schemas.check(content, ComparisonRecord if is_comparison else RunRecord,
-                         _path(folder))
+    return schemas.check(content, ComparisonRecord if is_comparison else RunRecord, _path(folder))
 
 
 def save(folder, record):

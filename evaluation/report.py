@@ -36,8 +36,7 @@ class SetReport:
     is nothing to show.
     """
 
-    def __init__(self, experiment, out, page_folder, image_folder, csv_folder=None,
-                 bin_dir=None):
+    def __init__(self, experiment, out, page_folder, image_folder, csv_folder=None):
         self.experiment = experiment
         self.by_method, self._others = _split(results.load_set(out, experiment.name), experiment)
         self._methods = experiment.shown_methods()
@@ -45,7 +44,6 @@ class SetReport:
         self._page = page_folder
         self._images = image_folder
         self._csv = csv_folder
-        self._bin_dir = bin_dir
 
     def block(self, kind):
         """One of BLOCKS."""
@@ -108,8 +106,7 @@ class SetReport:
             path = self._image(os.path.splitext(view)[0].replace(os.sep, "_") + ".jpg")
             try:
                 caption = pictures.draw_comparison(
-                    path, self.experiment.data, self.by_method, self._methods, view,
-                    self._bin_dir)
+                    path, self.experiment.data, self.by_method, self._methods, view)
             except Failure as error:
                 text.append(f"*There is no picture of {view}: {error}*\n")
                 continue

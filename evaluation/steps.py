@@ -34,6 +34,19 @@ class Step:
         raise NotImplementedError
 
 
+class Call(Step):
+    """A function that is called at once, and always; text: what it does, for a dry run."""
+    is_quick = True
+
+    def __init__(self, name, run, text=""):
+        self.name = name
+        self.run = run
+        self._text = text
+
+    def commands(self):
+        return [self._text] if self._text else []
+
+
 @dataclasses.dataclass
 class Job:
     """Steps, each of which needs those before it."""
@@ -75,8 +88,7 @@ def perform(jobs, dry_run=False):
 
 def _print(commands):
     for command in commands:
-        print(command if isinstance(command, str) else processes.command_text(command),
-              flush=True)
+        print(command if isinstance(command, str) else processes.command_text(command), flush=True)
 
 
 def exit_status(failures, count):

@@ -9,15 +9,15 @@ packages=(
   g++ cmake ninja-build ccache git python3 python3-venv ca-certificates
   # Scores and reports.
   curl p7zip-full python3-matplotlib python3-numpy python3-opencv python3-pydantic
+  python3-scipy
   # COLMAP.
   libboost-filesystem-dev libboost-graph-dev libboost-program-options-dev
   libboost-system-dev libboost-test-dev libceres-dev libcgal-dev libeigen3-dev
   libflann-dev libfreeimage-dev libgflags-dev libglew-dev libgoogle-glog-dev
   liblz4-dev libmetis-dev libqt5opengl5-dev libsqlite3-dev libsuitesparse-dev
   qtbase5-dev
-  # The engine, the scores, the tests and the benchmarks.
+  # The engine, the tests and the benchmarks.
   libbenchmark-dev libboost-context-dev libgtest-dev libhwy-dev libopencv-contrib-dev libopencv-dev
-  libnanoflann-dev libpugixml-dev nlohmann-json3-dev
 )
 
 if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then

@@ -32,35 +32,6 @@ DEFAULT_METHODS = ["tapa", *methods.ABLATION]
 PLANE_OPTIONS = ["--PatchMatchStereo.tapa_plane_distance", "0.1"]
 
 
-class Complete(steps.Step):
-    """A run that is to be scored."""
-    is_quick = True
-
-    def __init__(self, run):
-        self.is_done = run.is_complete
-
-    def commands(self):
-        return []
-
-    def run(self):
-        raise Failure("it is not complete; make it with scripts/eth3d run")
-
-
-class Write(steps.Step):
-    """A report, which is always made anew."""
-    is_quick = True
-
-    def __init__(self, report, runs):
-        self._report = report
-        self._runs = runs
-
-    def commands(self):
-        return [f"# {self._report.folder}/report.md from {self._runs}"]
-
-    def run(self):
-        print(self._report.write())
-
-
 def _chosen(arguments, known, advice):
     """The scenes that the options choose."""
     names = arguments.scenes.split(",") if arguments.scenes else None
@@ -108,6 +79,11 @@ def _all_runs(arguments):
     return {os.path.relpath(run.folder, _path(arguments, "runs")): run for run in runs}
 
 
+def _check_complete(scored):
+    if not scored.is_complete():
+        raise Failure("it is not complete; make it with scripts/eth3d run")
+
+
 def _perform(arguments, jobs):
     failures = steps.perform(jobs, arguments.dry_run)
     return steps.exit_status(failures, len(jobs))
@@ -122,7 +98,7 @@ def download(arguments):
     archives.seven_zip()
     failures, answered = [], missing
     if not arguments.dry_run:
-        failures = steps.perform(Job(archive.name, [archives.AskSize(archive)])
+        failures = steps.perform(Job(archive.name, [steps.Call("size", archive.ask_size)])
                                  for archive in missing)
         answered = [archive for archive in missing if archive.size is not None]
         if answered:
@@ -156,12 +132,9 @@ def run(arguments):
 
 def evaluate(arguments):
     """Scores of what runs made, as far as there is a truth for it."""
-    evaluator = (cloud_scores.named_evaluator(arguments.eth3d_evaluator)
-                 if arguments.eth3d_evaluator else cloud_scores.default_evaluator())
-
-    jobs = []
+    evaluator, jobs = cloud_scores.choose_evaluator(arguments.eth3d_evaluator), []
     for name, scored in _all_runs(arguments).items():
-        wanted = [] if arguments.dry_run else [Complete(scored)]
+        wanted = [steps.Call("run", functools.partial(_check_complete, scored))]
         scans = os.path.join(scored.data, "scans", "scan_alignment.mlp")
         if os.path.exists(scans):
             wanted += [cloud_scores.ScoreCloud(scored.folder, cloud, scans, evaluator)
@@ -177,9 +150,10 @@ def report(arguments):
     chosen, jobs = _prepared(arguments), []
     for size in map(_size_name, arguments.image_sizes):
         runs = _path(arguments, "runs", size)
-        jobs.append(Job(size, [Write(Eth3dReport(
-            _path(arguments, "report", size), runs, _path(arguments, "sets"), chosen,
-            arguments.methods, arguments.seeds), runs)]))
+        page = Eth3dReport(_path(arguments, "report", size), runs, _path(arguments, "sets"),
+                           chosen, arguments.methods, arguments.seeds)
+        jobs.append(Job(size, [steps.Call("report", lambda page=page: print(page.write()),
+                                          f"# {page.folder}/report.md from {runs}")]))
     return _perform(arguments, jobs)
 
 

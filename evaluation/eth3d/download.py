@@ -93,16 +93,6 @@ def _size_of(path):
     return os.path.getsize(path) if os.path.exists(path) else 0
 
 
-class AskSize(Step):
-    """The size of an archive that is to be fetched."""
-    name = "size"
-    is_quick = True
-
-    def __init__(self, archive):
-        self.is_done = archive.is_done
-        self.run = archive.ask_size
-
-
 def archives_of(scenes, folder, out, base_url=None, with_depth=True, remove_archives=False):
     """Archives of scenes, each once."""
     base = (base_url or BASE_URL).rstrip("/")

@@ -78,29 +78,26 @@ def spread(views, count):
     return views[first:first + count]
 
 
-def dslr_part(views, size, count):
-    source = views[0].camera
-    photographs = []
-    for index, view in enumerate(spread(views, count)):
-        name = f"DSC_{101 + 3 * index:04d}.JPG"
-        photographs.append(Photograph(view, 0, f"dslr_images_undistorted/{name}",
-                                      f"dslr_images/{name}"))
-    undistorted = [pinhole(source, size)]
-    return Part(TRACKS["high"], undistorted,
-                [with_lens(camera) for camera in undistorted], photographs, False)
+def dslr_name(index):
+    """Folder and name of a photograph."""
+    return "dslr_images", f"DSC_{101 + 3 * index:04d}.JPG"
 
 
-def rig_part(views, size, count):
-    source = views[0].camera
-    undistorted = [pinhole(source, size, shift) for shift in (-0.05, -0.02, 0.02, 0.05)]
+def rig_name(index):
+    return (f"images_rig_cam{4 + index % 4}",
+            f"{1477833684658155598 + 50000000 * (index // 4)}.png")
+
+
+def part_of(track, views, size, shifts, name_of, is_grey):
+    """The photographs of views by cameras that differ in their shifts, in turn."""
+    undistorted = [pinhole(views[0].camera, size, shift) for shift in shifts]
     photographs = []
-    for index, view in enumerate(spread(views, count)):
-        camera, name = index % 4, f"{1477833684658155598 + 50000000 * (index // 4)}.png"
-        photographs.append(Photograph(
-            view, camera, f"images_rig_cam{4 + camera}_undistorted/{name}",
-            f"images_rig_cam{4 + camera}/{name}"))
-    return Part(TRACKS["low"], undistorted,
-                [with_lens(camera) for camera in undistorted], photographs, True)
+    for index, view in enumerate(views):
+        folder, name = name_of(index)
+        photographs.append(Photograph(view, index % len(shifts), f"{folder}_undistorted/{name}",
+                                      f"{folder}/{name}"))
+    return Part(TRACKS[track], undistorted, list(map(with_lens, undistorted)), photographs,
+                is_grey)
 
 
 def source_pixels(camera, source):
@@ -189,8 +186,7 @@ def write_part(out, part, source, is_training, voxel_size):
             _, encoded = cv2.imencode(".jpg" if is_jpeg else ".png", picture,
                                       [cv2.IMWRITE_JPEG_QUALITY, 95] if is_jpeg else [])
             files.write_bytes(os.path.join(out, "images", name), encoded.tobytes())
-    models = [(f"{part.track.tag}_calibration_undistorted", part.undistorted,
-               "undistorted_name")]
+    models = [(f"{part.track.tag}_calibration_undistorted", part.undistorted, "undistorted_name")]
     if is_training:
         models.append((part.track.original_calibration, part.originals, "original_name"))
     for folder, cameras, key in models:
@@ -222,7 +218,9 @@ class MakeMiniature(Step):
             raise Failure(f"--views must be 2 to {len(views)} and --image_size at least 32")
         if os.path.exists(self._out):
             raise Failure(f"{self._out} exists already; name another folder or scene")
-        for part in (dslr_part(views, self._image_size, self._num_views),
-                     rig_part(views, self._image_size * 3 // 4, self._num_views)):
+        chosen = spread(views, self._num_views)
+        for part in (part_of("high", chosen, self._image_size, [0.0], dslr_name, False),
+                     part_of("low", chosen, self._image_size * 3 // 4,
+                             [-0.05, -0.02, 0.02, 0.05], rig_name, True)):
             write_part(self._out, part, views[0].camera, self._is_training, self._voxel_size)
         print(self._out)

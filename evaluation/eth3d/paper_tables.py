@@ -2,7 +2,8 @@
 
 from .. import results
 from ..methods import ABLATION, label
-from ..tables import Table, number, percent, tolerance_text
+from ..tables import Table
+from ..texts import number, percent, tolerance_text
 from . import published
 
 

@@ -2,7 +2,7 @@
 
 import os
 
-from .. import figures, files, links, report, results
+from .. import figures, files, report, results, workspaces
 from ..experiment import Experiment
 from ..methods import ABLATION, TAPA_ABLATION
 from . import paper_tables, published
@@ -33,14 +33,13 @@ def _names(scenes):
 class Eth3dReport:
     """FOLDER/report.md, figures, tables, and a page per scene."""
 
-    def __init__(self, folder, runs, sets, scenes, methods, seeds=(0,), bin_dir=None):
+    def __init__(self, folder, runs, sets, scenes, methods, seeds=(0,)):
         """runs: has SET/METHOD-SEED; sets: the prepared scenes; scenes: what it is about."""
         self.folder = folder
         self._runs_folder = runs
         self._sets = sets
         self._methods = methods
         self._seeds = seeds
-        self._bin_dir = bin_dir
         self._by_scene = {scene: results.load_set(runs, scene.set_name) for scene in scenes}
 
     def write(self):
@@ -124,13 +123,13 @@ class Eth3dReport:
     def _write_scene(self, scene):
         """Writes the page of a scene. Returns its name and what is missing."""
         data = os.path.join(self._sets, scene.set_name)
-        views = links.photographs(data)
+        views = workspaces.photographs(data)
         shown = report.SetReport(
             Experiment(name=scene.set_name, data=data, methods=self._methods,
                        seeds=list(self._seeds), options=None,
                        tolerances=published.TABLE2_TOLERANCES, views=views[len(views) // 2:][:1]),
             self._runs_folder, self.folder, os.path.join(self.folder, "figures"),
-            os.path.join(self.folder, "tables"), self._bin_dir)
+            os.path.join(self.folder, "tables"))
         parts = [f"# {scene.set_name}\n", shown.provenance(), *map(shown.block, report.BLOCKS)]
         page = f"{scene.set_name}.md"
         files.write_text(os.path.join(self.folder, page),

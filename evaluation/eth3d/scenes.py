@@ -26,8 +26,7 @@ class Track:
 
 
 TRACKS = {
-    "high": Track("high_res_multi_view", "dslr", "dslr_jpg", "dslr_calibration_jpg",
-                  FUSION_HIGH),
+    "high": Track("high_res_multi_view", "dslr", "dslr_jpg", "dslr_calibration_jpg", FUSION_HIGH),
     "low": Track("low_res_many_view", "rig", "rig", "rig_calibration", FUSION_LOW),
 }
 

@@ -7,69 +7,58 @@ import os
 import shutil
 import signal
 import subprocess
+import sys
 import time
 import unittest
 
 import tiny_workspace as tiny
 
-ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../..")
+ROOT = os.path.abspath(os.path.join(os.path.dirname(__file__), "../.."))
+sys.path.insert(0, os.path.join(ROOT, "tests", "evaluation"))
+from helpers import TestCase  # noqa: E402
+
 SCRIPTS = os.path.join(ROOT, "scripts")
 ROOM = os.path.join(ROOT, "examples", "room")
 BIN_DIR = os.path.dirname(os.path.abspath(tiny.COLMAP))
-FAST = ["--PatchMatchStereo.num_iterations", "1",
-        "--PatchMatchStereo.window_radius", "3",
+FAST = ["--PatchMatchStereo.num_iterations", "1", "--PatchMatchStereo.window_radius", "3",
         "--PatchMatchStereo.num_samples", "5"]
 SMALL = ["--every", "4", "--sources", "2", "--image_size", "144"]
 SMALL_OPTIONS = ["--PatchMatchStereo.max_image_size", "144", *FAST]
 
 
-class BenchmarkTest(tiny.TestCase):
+class EvaluateTest(TestCase):
 
     def run_script(self, *arguments, bin_dir=BIN_DIR):
         return subprocess.run(
-            [os.path.join(SCRIPTS, "evaluate"), *arguments],
-            stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE, text=True, timeout=600, check=False,
+            [os.path.join(SCRIPTS, "evaluate"), *arguments], stdin=subprocess.DEVNULL,
+            capture_output=True, text=True, timeout=600, check=False,
             env=dict(os.environ, TAPA_BIN_DIR=bin_dir))
 
     def room(self, *arguments, options=FAST, **more):
         return self.run_script(ROOM, "--out", self.path("out"), *SMALL,
                                *arguments, "--", *options, **more)
 
-    def read(self, *parts):
-        with open(self.path(*parts), encoding="utf-8") as file:
-            return file.read()
-
     def read_json(self, *parts):
         return json.loads(self.read(*parts))
 
+    def read_csv(self, *parts):
+        return list(csv.DictReader(self.read(*parts).splitlines()))
+
     def wrapper(self, when, then):
-        """A folder of programs in which colmap does something else at times."""
-        folder = self.path("bin")
-        os.makedirs(folder, exist_ok=True)
-        with open(os.path.join(folder, "colmap"), "w", encoding="utf-8") as file:
-            file.write(f"#!/bin/sh\ncase \"$*\" in {when}) {then} ;; esac\n"
-                       f"exec '{os.path.abspath(tiny.COLMAP)}' \"$@\"\n")
-        os.chmod(os.path.join(folder, "colmap"), 0o755)
-        for name in ("evaluate_depth_maps", "evaluate_point_cloud"):
-            link, target = os.path.join(folder, name), os.path.join(BIN_DIR, name)
-            if os.path.exists(target) and not os.path.exists(link):
-                os.symlink(target, link)
-        return folder
+        """A folder in which colmap does something else at times."""
+        return os.path.dirname(self.write(
+            "bin/colmap", f"#!/bin/sh\ncase \"$*\" in {when}) {then} ;; esac\n"
+            f"exec '{os.path.abspath(tiny.COLMAP)}' \"$@\"\n", executable=True))
 
     def evaluator(self):
         """Stands in for ETH3D's program: half of everything is right."""
-        path = self.path("evaluator")
-        with open(path, "w", encoding="utf-8") as file:
-            file.write("#!/bin/sh\n[ -s \"$4\" ] && [ -s \"$6\" ] || exit 1\n"
-                       "echo \"$@\" >> " + self.path("evaluated") + "\n"
-                       "n=$(echo \"$2\" | tr ',' '\\n' | wc -l)\n"
-                       "half=$(yes 0.5 | head -n $n | tr '\\n' ' ')\n"
-                       "echo \"Tolerances: $(echo $2 | tr ',' ' ')\"\n"
-                       "for name in Completenesses Accuracies F1-scores; do\n"
-                       "echo \"$name: $half\"; done\n")
-        os.chmod(path, 0o755)
-        return path
+        return self.write("evaluator", (
+            "#!/bin/sh\n[ -s \"$4\" ] && [ -s \"$6\" ] || exit 1\n"
+            f"echo \"$@\" >> {self.path('evaluated')}\n"
+            "half=$(echo \"$2\" | tr ',' '\\n' | sed 's/.*/0.5/' | tr '\\n' ' ')\n"
+            "echo \"Tolerances: $(echo $2 | tr ',' ' ')\"\n"
+            "for name in Completenesses Accuracies F1-scores; do echo \"$name: $half\"; done\n"),
+            executable=True)
 
     def test_report_of_methods_seeds_and_other_tools(self):
         first = self.room("--methods", "plain", "--no_clouds")
@@ -91,8 +80,7 @@ class BenchmarkTest(tiny.TestCase):
         self.assertEqual(self.read_json("out/room/plain-0/record.json"), record)
         self.assertEqual(record["views"], 3)
         self.assertEqual(record["image_size"], [144, 96])
-        self.assertEqual(record["options"], [
-            "--PatchMatchStereo.seed", "0", *SMALL_OPTIONS])
+        self.assertEqual(record["options"], ["--PatchMatchStereo.seed", "0", *SMALL_OPTIONS])
         self.check_tables()
         self.check_page()
         # Once more: nothing is left to do.
@@ -101,8 +89,7 @@ class BenchmarkTest(tiny.TestCase):
         self.assertEqual(again.stderr, "")
 
     def check_tables(self):
-        with open(self.path("out/tables/room_depth.csv"), encoding="utf-8") as file:
-            rows = list(csv.DictReader(file))
+        rows = self.read_csv("out/tables/room_depth.csv")
         self.assertEqual([(row["method"], row["tolerance"], row["unit"])
                           for row in rows[:4]],
                          [("plain", "0.03", "m"), ("plain", "0.1", "m"),
@@ -118,9 +105,8 @@ class BenchmarkTest(tiny.TestCase):
         self.assertGreater(float(by_method["tapa"]["f1"]), 0.2)
         self.assertGreater(float(by_method["tapa"]["completeness"]),
                            float(by_method["plain"]["completeness"]))
-        with open(self.path("out/tables/room_points_fused.csv"),
-                  encoding="utf-8") as file:
-            self.assertEqual({row["f1"] for row in csv.DictReader(file)}, {"0.5"})
+        self.assertEqual({row["f1"] for row in self.read_csv("out/tables/room_points_fused.csv")},
+                         {"0.5"})
         # Two clouds of each run, one of the other tool.
         self.assertEqual(len(self.read("evaluated").splitlines()), 4 * 2 + 1)
 
@@ -131,14 +117,10 @@ class BenchmarkTest(tiny.TestCase):
         self.assertIn("one in 4, 2 source views", text)
         self.assertIn("Points were scored by `evaluator`.", text)
         self.assertNotIn("What is missing", text)
-        for name in ("room_errors.png", "room_textureness.png",
-                     "room_room_04.jpg"):
+        for name in ("room_errors.png", "room_textureness.png", "room_room_04.jpg"):
             self.assertIn(f"(figures/{name})", text)
-            self.assertGreater(os.path.getsize(self.path("out/figures", name)),
-                               5000)
+            self.assertGreater(os.path.getsize(self.path("out/figures", name)), 5000)
 
-    @unittest.skipUnless(os.path.exists(os.path.join(
-        BIN_DIR, "evaluate_point_cloud")), "points cannot be scored yet")
     def test_points(self):
         result = self.room("--methods", "plain")
         self.assertEqual(result.returncode, 0, result.stderr)
@@ -150,14 +132,12 @@ class BenchmarkTest(tiny.TestCase):
 
     def test_a_method_that_fails_does_not_stop_the_others(self):
         broken = self.wrapper("*PatchMatchStereo.tapa*", "echo 'ERROR: no luck'; exit 1")
-        result = self.room("--methods", "tapa,plain", "--no_clouds",
-                           bin_dir=broken)
+        result = self.room("--methods", "tapa,plain", "--no_clouds", bin_dir=broken)
         self.assertEqual(result.returncode, 1)
         self.assertIn("ERROR: 1 of 2 failed:\n  "
                       + self.path("out/room/tapa-0"), result.stderr)
         text = self.read("out/report.md")
-        self.assertIn("- room: tapa, seed 0: stereo: patch_match_stereo: no luck",
-                      text)
+        self.assertIn("- room: tapa, seed 0: stereo: patch_match_stereo: no luck", text)
         self.assertRegex(text, r"\| TAPA \| - \| - \|")
         self.assertRegex(text, r"\| plain \| \d+\.\d / ")
         # What failed is tried again.
@@ -200,44 +180,6 @@ class BenchmarkTest(tiny.TestCase):
         self.assertEqual(look.returncode, 0, look.stderr)
         self.assertIn("not finished", self.read("out/report.md"))
 
-    def test_a_workspace_that_was_made_by_hand_is_continued(self):
-        workspace = self.path("out/room/plain-0")
-        for command in (
-                [os.path.join(SCRIPTS, "make_workspace.sh"), ROOM, workspace, "2", "4"],
-                [tiny.COLMAP, "patch_match_stereo", "--workspace_path", workspace,
-                 *SMALL_OPTIONS]):
-            made = tiny.run(command)
-            self.assertEqual(made.returncode, 0, made.stdout)
-        result = self.room("--methods", "plain", "--no_clouds")
-        self.assertEqual(result.returncode, 0, result.stderr)
-        record = self.read_json("out/room/plain-0/record.json")
-        self.assertIsNone(record["seconds"]["stereo"])
-        self.assertGreater(record["seconds"]["fused"], 0)
-        self.assertRegex(self.read("out/report.md"),
-                         r"\| plain \| 1 \| 3 \| 144x96 .*\| - \| - \| - \|\n")
-
-    def test_other_options_are_refused(self):
-        self.room("--methods", "plain", "--no_clouds")
-        before = self.read_json("out/room/plain-0/record.json")
-        result = self.room("--methods", "plain", "--no_clouds", options=[])
-        self.assertEqual(result.returncode, 1)
-        self.assertIn("was made with options", result.stderr)
-        self.assertEqual(self.read_json("out/room/plain-0/record.json")["done"],
-                         before["done"])
-        self.check_a_damaged_record()
-
-    def check_a_damaged_record(self):
-        path = self.path("out/room/plain-0/record.json")
-        with open(path, "w", encoding="utf-8") as file:
-            file.write("{}")
-        for arguments in ([], ["--report_only"]):
-            result = self.room("--methods", "plain", "--no_clouds", *arguments)
-            self.assertEqual(result.returncode, 1)
-            self.assertIn(f"ERROR: {path} is damaged: it has no key ", result.stderr)
-            self.assertNotIn("Traceback", result.stderr)
-        self.assertTrue(os.path.exists(self.path("out/room/plain-0/fused.ply")))
-        self.assertEqual(self.read("out/room/plain-0/record.json"), "{}")
-
     def test_dry_run_does_nothing(self):
         result = self.room("--dry_run", "--no_clouds", "--methods", "tapa")
         self.assertEqual(result.returncode, 0, result.stderr)
@@ -254,8 +196,7 @@ class BenchmarkTest(tiny.TestCase):
         self.assertEqual(len(result.stdout.splitlines()), 8, result.stdout)
 
     def test_a_page_from_a_plan(self):
-        with open(self.path("plan.toml"), "w", encoding="utf-8") as file:
-            file.write(f"""
+        path = self.write("plan.toml", f"""
 page = "page.md"
 images = "images"
 title = "A page"
@@ -273,8 +214,7 @@ show = ["depth", "errors"]
 [[section]]
 set = "absent"
 """)
-        arguments = ["--plan", self.path("plan.toml"), "--data",
-                     os.path.dirname(ROOM), "--out", self.path("out"),
+        arguments = ["--plan", path, "--data", os.path.dirname(ROOM), "--out", self.path("out"),
                      "--no_clouds"]
         result = self.run_script(*arguments)
         self.assertEqual(result.returncode, 0, result.stderr)
@@ -294,20 +234,14 @@ set = "absent"
     def test_bad_input_is_one_line(self):
         out = ["--out", self.path("out")]
         for arguments, text in (
-                ([], "--out is required"),
-                (out, "either data sets or --plan"),
+                ([], "--out is required"), (out, "either data sets or --plan"),
                 ([ROOM, *out, "--plan", "x"], "either data sets or --plan"),
                 ([ROOM], "--out is required"),
                 ([ROOM, *out, "--methods", "none"], "there is no method none; there are plain"),
-                ([ROOM, *out, "--seeds", "x"], "'x' is not a list of whole numbers"),
-                ([ROOM, *out, "--tolerances", "0,1"], "positive numbers"),
                 ([ROOM, *out, "--tolerances", "nan"], "positive numbers"),
-                ([ROOM, *out, "--every", "0"], "'0' is not a whole number from 1 on"),
-                ([ROOM, *out, "--num_views", "-1"], "'-1' is not a whole number"),
                 ([ROOM, *out, "--frobnicate"], "--frobnicate"),
                 ([ROOM, *out, "--compare", "x"], "'x' is not NAME=PATH"),
                 ([ROOM, *out, "--compare", "x=none"], "there is no none"),
-                ([ROOM, *out, "--compare", f"tapa={ROOM}"], "under this name"),
                 ([ROOM, *out, "--views", "x.jpg"], "no photograph x.jpg"),
                 ([ROOM, ROOM, *out], "two data sets are called room"),
                 ([self.folder, *out], "has no folder images"),
