@@ -2,19 +2,20 @@
 
 from .processes import number_text
 
-# What COLMAP takes, and so the paper; in the program colmap_defaults says the same.
-_COLMAP = ["--PatchMatchStereo.num_iterations", "5",
-           "--PatchMatchStereo.num_geom_iterations", "5",
-           "--PatchMatchStereo.num_samples", "15",
-           "--PatchMatchStereo.first_window_step", "1"]
-_TAPA = ["--PatchMatchStereo.tapa", "1"]
-_PAPER = _COLMAP + _TAPA + ["--PatchMatchStereo.tapa_completion", "0",
-                  "--PatchMatchStereo.tapa_min_textureness", "0.5"]
 
 
-_FULL_WINDOW = ["--PatchMatchStereo.first_window_step", "1"]
-_FEWER_ITERATIONS = [*_FULL_WINDOW, "--PatchMatchStereo.num_iterations", "2"]
-_SPARSE_WINDOW = ["--PatchMatchStereo.num_iterations", "2", "--PatchMatchStereo.window_step", "2"]
+def _stereo(**options):
+    """Options of patch_match_stereo as arguments."""
+    return [text for name, value in options.items()
+            for text in ("--PatchMatchStereo." + name, str(value))]
+
+
+# What COLMAP takes, and so the paper; in the program colmap_defaults says the same, but
+# options after it would do nothing.
+_COLMAP = _stereo(num_levels=1, num_iterations=5, num_geom_iterations=5, num_samples=15,
+                  window_step=1, geom_perturbation=1, try_all=1, hysteresis=0)
+_TAPA = _stereo(tapa=1)
+_PAPER = _COLMAP + _TAPA + _stereo(tapa_completion=0, tapa_min_textureness=0.5)
 
 # By name what a reader sees and the options of patch_match_stereo. plain and tapa are what
 # this program does, colmap and paper what COLMAP does and what the paper describes; the others
@@ -27,9 +28,12 @@ _ALL = {
     "paper": ("paper's TAPA", _PAPER),
 }
 for _name, _label, _options in (
-        ("full", "full windows", _FULL_WINDOW),
-        ("2+2", "2 + 2 iterations, full windows", _FEWER_ITERATIONS),
-        ("sparse", "2 + 2 iterations, window step 2", _SPARSE_WINDOW)):
+        ("one-level", "one level", _stereo(num_levels=1)),
+        ("no-hysteresis", "no hysteresis", _stereo(hysteresis=0)),
+        ("all", "all hypotheses", _stereo(try_all=1)),
+        ("8-views", "8 views drawn", _stereo(num_samples=8)),
+        ("full", "full windows", _stereo(window_step=1)),
+        ("long", "4 iterations at every level", _stereo(num_fine_iterations=4))):
     for _base in ("plain", "tapa"):
         _ALL[f"{_base}-{_name}"] = f"{_ALL[_base][0]}, {_label}", _ALL[_base][1] + _options
 for _name, _label, _option in (("weights", "weights", "texture_weighting"),
@@ -38,7 +42,7 @@ for _name, _label, _option in (("weights", "weights", "texture_weighting"),
                                ("refinement", "refinement", "refinement")):
     for _base in ("tapa", "paper"):
         _ALL[f"{_base}-{_name}"] = (f"{_ALL[_base][0]} without {_label}", [
-            *_ALL[_base][1], "--PatchMatchStereo.tapa_" + _option, "0"])
+            *_ALL[_base][1], *_stereo(**{"tapa_" + _option: 0})])
 
 METHODS = {name: options for name, (_, options) in _ALL.items()}
 

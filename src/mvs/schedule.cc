@@ -48,8 +48,10 @@ SweepParams Schedule::At(int index) const {
   const int sweep = index % kSweepsPerIteration;
   SweepParams params = common_;
   params.index = index;
-  params.perturbation = static_cast<float>(
-      first_perturbation_ * std::pow(2.0, -(iteration + sweep / double{kSweepsPerIteration})));
+  const double shrinkage =
+      std::pow(2.0, -(iteration + sweep / double{kSweepsPerIteration}));
+  params.perturbation = static_cast<float>(first_perturbation_ * shrinkage);
+  params.lost_perturbation = static_cast<float>(shrinkage);
   params.prev_prob_weight = static_cast<float>(index) / num_sweeps();
   params.check_consistency = checks_consistency_ && index + 1 == num_sweeps();
   return params;

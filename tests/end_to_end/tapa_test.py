@@ -114,7 +114,7 @@ class Switches(tiny.TestCase):
             self.assertIn("%s=true" % switch, text)
         self.assertIn("\ntapa=false\n", text)
         text = text.replace("\ntapa=false\n", "\ntapa=true\n")
-        text = text.replace("\nnum_iterations=3\n", "\nnum_iterations=1\n")
+        text = text.replace("\nnum_iterations=4\n", "\nnum_iterations=1\n")
         # Options of other commands are not known to this one.
         section = text[text.index("[PatchMatchStereo]\n"):].split("\n[")[0]
         with open(self.path("project.ini"), "w") as file:
@@ -349,19 +349,21 @@ class Record(tiny.TestCase):
                             "before a geometric pass nothing is filtered")
 
     def test_photometric_maps_of_a_first_pass(self):
-        self.assert_success(tiny.run_stereo(self.folder, first_window_step=1))
+        self.assert_success(tiny.run_stereo(self.folder))
         self.expect_refusal("filter was 0, is 1", geom_consistency=0)
-        # Without the filter, and with as full windows, it is the same pass.
+        # Without the filter it is the same pass.
         result = tiny.run_stereo(self.folder, geom_consistency=0, filter=0)
         self.assert_success(result)
         self.assertNotIn("WARNING", result.stdout)
 
     def test_passes_have_numbers_of_their_own(self):
-        names = ("num_iterations", "num_samples", "window_step")
+        names = ("num_iterations", "first_perturbation", "num_samples", "window_step")
         defaults = {name: None for name in tiny.FAST}
+        colmap = ["5", "1", "15", "1"]
         for options, photometric, geometric in (
-                ({}, ["3", "8", "2"], ["2", "8", "1"]),
-                ({"colmap_defaults": 1}, ["5", "15", "1"], ["5", "15", "1"])):
+                ({}, ["4", "1", "4", "2"], ["1", "0.125", "4", "2"]),
+                ({"num_levels": 2}, ["2", "0.03125", "4", "2"], ["1", "0.03125", "4", "2"]),
+                ({"colmap_defaults": 1, "num_levels": 3}, colmap, colmap)):
             folder = self.path("options%d" % len(options))
             tiny.make_workspace(folder, num_views=2)
             self.assert_success(tiny.run_stereo(
@@ -376,7 +378,9 @@ class Record(tiny.TestCase):
         for name in self.names:
             for kind in ("depth_maps", "normal_maps"):
                 os.remove(tiny.map_path(self.folder, name, kind, "photometric"))
-        self.expect_refusal("first_window_step was 2, is 1", first_window_step=1)
+        self.expect_refusal("passes_before was level 0 photometric 1 from 1, is "
+                            "level 0 photometric 1 from 0.5",
+                            first_perturbation=0.5, geom_perturbation=0.125)
 
     def test_maps_with_other_rays(self):
         self.assert_success(tiny.run_stereo(self.folder))

@@ -312,8 +312,8 @@ Vec3 PerturbedNormal(const Random& random, double perturbation,
 }
 
 bool IsSame(const DepthNormal& a, const DepthNormal& b) {
-  return std::abs(a.depth - b.depth) <= 1e-5f * b.depth &&
-         (ToEigen(a.normal) - ToEigen(b.normal)).norm() <= 1e-3;
+  return std::abs(a.depth - b.depth) <= 1e-4f * b.depth &&
+         (ToEigen(a.normal) - ToEigen(b.normal)).norm() <= 1e-2;
 }
 
 std::vector<int> DrawViews(const Options& options, const Random& random,
@@ -364,9 +364,7 @@ void Sweep(const Options& options, const Problem& problem,
   const int width = state->depth.width();
   const int direction = index % 4;
   const int num_lines = direction % 2 == 0 ? width : state->depth.height();
-  const double perturbation =
-      options.first_perturbation *
-      std::pow(2.0, -(index / 4 + direction / 4.0));
+  const double shrinkage = std::pow(2.0, -(index / 4 + direction / 4.0));
   const double previous_weight =
       static_cast<double>(index) / (4 * options.num_iterations);
   for (int line = 0; line < num_lines; ++line) {
@@ -417,6 +415,12 @@ void Sweep(const Options& options, const Problem& problem,
                     ToEigen(previous_normal)
                         .dot(Ray(problem, before.row, before.col)) /
                     slope;
+      double drawn_cost = 0;
+      for (const int m : drawn) {
+        drawn_cost += state->cost[at(i, m)] / drawn.size();
+      }
+      const double perturbation =
+          (drawn_cost > 0.5 ? 1 : options.first_perturbation) * shrinkage;
       const float random_depth = static_cast<float>(
           current.depth *
           (1 - perturbation + 2 * perturbation * random.Uniform(kDrawDepth)));

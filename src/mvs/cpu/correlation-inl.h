@@ -11,6 +11,7 @@
 
 #include <hwy/highway.h>
 
+#include <cmath>
 #include <cstring>
 
 #include "src/mvs/cpu/source_image.h"
@@ -191,17 +192,23 @@ HWY_INLINE Moments SumSamples(const Window& window, const Patch& patch,
 
 // Whether the whole window lies in front of the camera and inside the image. A
 // homography without a horizon between them keeps straight lines straight, so
-// the corners tell.
+// the corners tell; that every corner is on the right side of a border is one
+// condition on a linear function.
 HWY_INLINE bool WindowIsInside(const Window& window, const SourceImage& source,
                                const Warp& warp) {
   const float r = static_cast<float>(window.radius);
-  bool inside = true;
-  for (int corner = 0; corner < 4; ++corner) {
-    const Vec3 p = warp.At(corner & 1 ? r : -r, corner & 2 ? r : -r);
-    inside &= (p.z > 0.0f) & (p.x >= 0.0f) & (p.y >= 0.0f) &
-              (p.x <= source.width() * p.z) & (p.y <= source.height() * p.z);
-  }
-  return inside;
+  const auto smallest = [r](float origin, float step_x, float step_y) {
+    return origin - r * (std::fabs(step_x) + std::fabs(step_y));
+  };
+  const Vec3& o = warp.origin;
+  const Vec3& x = warp.step_x;
+  const Vec3& y = warp.step_y;
+  const float w = static_cast<float>(source.width());
+  const float h = static_cast<float>(source.height());
+  return (smallest(o.z, x.z, y.z) > 0.0f) & (smallest(o.x, x.x, y.x) >= 0.0f) &
+         (smallest(o.y, x.y, y.y) >= 0.0f) &
+         (smallest(w * o.z - o.x, w * x.z - x.x, w * y.z - y.x) >= 0.0f) &
+         (smallest(h * o.z - o.y, h * x.z - x.y, h * y.z - y.y) >= 0.0f);
 }
 
 // 1 - NCC of the patch with its image in the source view, 0 to 2; 2 where

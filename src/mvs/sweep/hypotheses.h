@@ -115,24 +115,31 @@ TAPA_INLINE bool TriesRandom(const PixelContext& p, int hypothesis) {
              kRandom + static_cast<int>(3 * p.random.Uniform(kDrawHypothesis));
 }
 
-// Whether two estimates of a pixel are the same but for errors of rounding:
-// within a window they differ by a few thousandths of a pixel.
+// Whether two estimates of a pixel are the same in all that can be measured:
+// within a window they differ by a few hundredths of a pixel.
 TAPA_INLINE bool IsSame(const DepthNormal& a, const DepthNormal& b) {
-  constexpr float kMaxDepthChange = 3e-4f;
-  constexpr float kMaxNormalChange = 3e-2f;
+  constexpr float kMaxDepthChange = 1e-4f;
+  constexpr float kMaxNormalChange = 1e-2f;
   const Vec3 difference = a.normal - b.normal;
   return fabsf(a.depth - b.depth) <= kMaxDepthChange * b.depth &&
          Dot(difference, difference) <= kMaxNormalChange * kMaxNormalChange;
 }
 
 // All hypotheses. What is none is not visible.
+// drawn_cost: photometric cost of the current estimate, mean of the draws.
 TAPA_INLINE void MakeHypotheses(const PixelContext& p,
-                                const PreviousPixel& previous,
+                                const PreviousPixel& previous, float drawn_cost,
                                 DepthNormal* hypotheses) {
+  // NCC 0.5: what is not seen in the views is looked for farther away, such as
+  // what a coarser level was too coarse for.
+  constexpr float kLostCost = 0.5f;
+  const float perturbation = drawn_cost > kLostCost
+                                 ? p.params.lost_perturbation
+                                 : p.params.perturbation;
   const float random_depth =
-      PerturbDepth(p.random, p.params.perturbation, p.current.depth);
+      PerturbDepth(p.random, perturbation, p.current.depth);
   const Vec3 random_normal =
-      PerturbNormal(p.random, p.params.perturbation, p.current.normal, p.ray);
+      PerturbNormal(p.random, perturbation, p.current.normal, p.ray);
   hypotheses[kCurrent] = p.current;
   DepthNormal& propagated = hypotheses[kPropagated];
   propagated = {PropagateDepth(previous.estimate, previous.ray, p.ray),

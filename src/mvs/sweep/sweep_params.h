@@ -15,8 +15,10 @@ struct SweepParams {
   // and keys the random numbers.
   uint32_t index = 0;
   uint64_t seed = 0;
-  // Relative size of the random changes, 1 in the first sweep.
+  // Relative size of the random changes, at most 1, and that of a pixel whose
+  // estimate no view supports.
   float perturbation = 1;
+  float lost_perturbation = 1;
   // Weight of the selection probability of the sweep before, 0 to 1.
   float prev_prob_weight = 0;
   int num_samples = 4;

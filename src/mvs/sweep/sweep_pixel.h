@@ -46,8 +46,9 @@ TAPA_INLINE Choice SweepPixel(const PixelContext& p,
   ComputeSamplingDistribution<Lanes>(p);
   const int num_distinct = DrawViews<Lanes>(p);
 
+  const float drawn_cost = MeanDrawnCost<Lanes>(p);
   if (Lanes::First() == 0) {
-    MakeHypotheses(p, previous, s.hypothesis);
+    MakeHypotheses(p, previous, drawn_cost, s.hypothesis);
   }
   Lanes::Sync();
   if (p.params.geometric) {

@@ -97,6 +97,17 @@ TAPA_INLINE int DrawViews(const PixelContext& p) {
   return Lanes::Sum(num_distinct);
 }
 
+// Photometric cost of the current estimate, mean of the draws.
+template <class Lanes>
+TAPA_INLINE float MeanDrawnCost(const PixelContext& p) {
+  const PixelScratch& s = p.scratch;
+  float sum = 0.0f;
+  for (int m = Lanes::First(); m < p.views.count; m += Lanes::Step()) {
+    sum += s.num_drawn[m] * s.cost[m];
+  }
+  return Lanes::Sum(sum) / p.params.num_samples;
+}
+
 }  // namespace tapa
 
 #endif  // TAPA_SRC_MVS_SWEEP_VIEW_SAMPLING_H_
