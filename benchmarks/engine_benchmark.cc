@@ -14,6 +14,7 @@
 #include "benchmarks/naive_correlation.h"
 #include "src/mvs/cpu/sweep.h"
 #include "src/mvs/estimate_depth.h"
+#include "src/mvs/levels.h"
 #include "tests/mvs/synthetic.h"
 
 namespace tapa {
@@ -182,6 +183,57 @@ BENCHMARK(BM_TwoPassesSideBySide)
     ->MeasureProcessCPUTime()
     ->UseRealTime()
     ->Unit(benchmark::kMillisecond);
+
+// What a level costs per megapixel: the hand-up from half the size, and a
+// photometric and a geometric pass with the numbers of a level that is not the
+// coarsest. Next to it, with `colmap` 1, what COLMAP does on its only level: five
+// iterations in both passes, 15 views, full windows, all hypotheses.
+void BM_Level(benchmark::State& state) {
+  const bool colmap = state.range(0) != 0;
+  const SyntheticPlane scene = MakeScene(160, 120, 10);
+  Options options;
+  options.num_threads = 1;
+  options.filter = false;
+  options.first_perturbation = colmap ? 1 : 1.0 / 32;
+  if (colmap) {
+    options.num_samples = 15;
+    options.window_step = 1;
+    options.search.try_all = true;
+    options.search.hysteresis = 0;
+  }
+  const View& reference = scene.problem().reference;
+  const Problem truth = scene.GeometricProblem();
+  const Map<float> coarse_depth = ReduceDepth(truth.depth, 80, 60);
+  const Map<Vec3> coarse_normal(80, 60, scene.normal());
+  Camera coarse_camera = reference.camera;
+  for (double* value : {&coarse_camera.fx, &coarse_camera.fy,
+                        &coarse_camera.cx, &coarse_camera.cy}) {
+    *value /= 2;
+  }
+  for (auto _ : state) {
+    Problem photometric = scene.problem();
+    if (!colmap) {
+      DepthNormalMaps start =
+          HandUp({coarse_depth, coarse_normal}, coarse_camera, reference);
+      photometric.depth = std::move(start.depth);
+      photometric.normal = std::move(start.normal);
+    }
+    options.geom_consistency = false;
+    options.num_iterations = colmap ? 5 : 2;
+    std::optional<Estimate> estimate = EstimateDepth(options, photometric);
+    Problem geometric = truth;
+    geometric.depth = std::move(estimate->depth);
+    geometric.normal = std::move(estimate->normal);
+    options.geom_consistency = true;
+    options.num_iterations = colmap ? 5 : 1;
+    benchmark::DoNotOptimize(EstimateDepth(options, geometric));
+  }
+  state.counters["s_per_megapixel"] = benchmark::Counter(
+      1e-6 * reference.image->size() * state.iterations(),
+      benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+BENCHMARK(BM_Level)->ArgName("colmap")->Arg(1)->Arg(0)->Unit(
+    benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace tapa

@@ -112,6 +112,18 @@ void StereoRun::PrepareFolders() const {
   }
 }
 
+// A small image leaves most of a GPU idle: at coarse levels it gets more views
+// at a time, while the CPU has all of its threads at work on one.
+std::vector<int> StereoRun::WorkersOf(const PassPlan& pass) const {
+  constexpr int kMaxTimes = 4;
+  const int times = pass.level > 1 ? kMaxTimes : 1 << pass.level;
+  std::vector<int> workers;
+  for (const int device : workers_) {
+    workers.insert(workers.end(), device == kCpu ? 1 : times, device);
+  }
+  return workers;
+}
+
 // Whether there is anything to do in a pass.
 bool StereoRun::Computes(const PassPlan& pass) const {
   for (size_t i = 0; i < plan_.problems.size(); ++i) {
@@ -147,15 +159,16 @@ bool StereoRun::ComputePass(const PassPlan& pass) {
     }
   };
   // The calling thread is the first worker.
+  const std::vector<int> workers = WorkersOf(pass);
   std::vector<std::thread> others;
-  for (size_t i = 1; i < workers_.size(); ++i) {
+  for (size_t i = 1; i < workers.size(); ++i) {
     try {
-      others.emplace_back(work, workers_[i]);
+      others.emplace_back(work, workers[i]);
     } catch (const std::system_error&) {
       break;  // Those that could be started share out its views.
     }
   }
-  work(workers_[0]);
+  work(workers[0]);
   for (std::thread& other : others) {
     other.join();
   }

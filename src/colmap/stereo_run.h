@@ -47,6 +47,7 @@ class StereoRun {
   bool Stopped() const { return halted_ || stopped_(); }
   void PrepareFolders() const;
   bool Computes(const PassPlan& pass) const;
+  std::vector<int> WorkersOf(const PassPlan& pass) const;
   // The functions below return false if stopped.
   bool ComputePass(const PassPlan& pass);
   bool ComputeProblem(size_t number, const PassPlan& pass, int device);
