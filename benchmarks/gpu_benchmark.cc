@@ -128,7 +128,7 @@ void WarmUp(int device, int width, int height, int num_sources) {
 void PrintLimits(const Result& result, size_t num_pixels, int num_sources) {
   const DeviceProfile& p = result.profile;
   // The kernel of the first costs measures every view once and little else.
-  const double samples = 121.0 * num_pixels * num_sources;
+  const double samples = 36.0 * num_pixels * num_sources;
   const double rate = samples / p.initialize_seconds;
   const double chip = p.num_multiprocessors * p.clock_hz;
   std::printf(

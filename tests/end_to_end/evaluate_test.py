@@ -20,7 +20,7 @@ from helpers import TestCase  # noqa: E402
 SCRIPTS = os.path.join(ROOT, "scripts")
 ROOM = os.path.join(ROOT, "examples", "room")
 BIN_DIR = os.path.dirname(os.path.abspath(tiny.COLMAP))
-FAST = ["--PatchMatchStereo.num_iterations", "1", "--PatchMatchStereo.window_radius", "3",
+FAST = ["--PatchMatchStereo.num_iterations", "2", "--PatchMatchStereo.window_radius", "3",
         "--PatchMatchStereo.num_samples", "5"]
 SMALL = ["--every", "4", "--sources", "2", "--image_size", "144"]
 SMALL_OPTIONS = ["--PatchMatchStereo.max_image_size", "144", *FAST]

@@ -36,7 +36,7 @@ struct CudaCase {
   int index = 0;
   int num_sources = 5;
   int window_radius = 5;
-  int window_step = 1;
+  int window_step = 2;
   bool filter = false;
 
   friend void PrintTo(const CudaCase& c, std::ostream* out) { *out << c.name; }
@@ -191,7 +191,7 @@ void ExpectAgrees(const CudaCase& c, bool exact, const Outcome& actual,
   }
   // A draw or a tie that falls to the other side spreads to the next pixels of
   // the line; with a single view ties are frequent.
-  const double share = c.num_sources == 1 ? 0.995 : 0.998;
+  const double share = c.num_sources == 1 ? 0.99 : 0.998;
   EXPECT_GE(ShareOfSameChoices(actual.estimate, expected.estimate),
             exact ? share : 0.95);
   EXPECT_GE(ShareWithin(actual.costs, expected.costs, kCostTolerance),
@@ -227,10 +227,11 @@ INSTANTIATE_TEST_SUITE_P(
                     CudaCase{"Right", true, true, 11},
                     CudaCase{"OneView", true, false, 4, 1},
                     CudaCase{"ManyViews", false, false, 1, 35},
-                    CudaCase{"SmallWindow", true, true, 3, 6, 3},
+                    CudaCase{"SmallWindow", true, true, 3, 6, 3, 1},
                     CudaCase{"Step2", false, false, 4, 5, 10, 2},
-                    CudaCase{"Filter", true, false, 6, 9, 5, 1, true},
-                    CudaCase{"FilterOneView", false, true, 7, 1, 5, 1, true}),
+                    CudaCase{"FullWindow", true, true, 3, 5, 5, 1},
+                    CudaCase{"Filter", true, false, 6, 9, 5, 2, true},
+                    CudaCase{"FilterOneView", false, true, 7, 1, 5, 2, true}),
     [](const auto& info) { return info.param.name; });
 
 bool IsSame(const Outcome& a, const Outcome& b) {

@@ -35,7 +35,7 @@ KernelKind ChooseKernel(const Options& options, const CudaSwitches& switches,
   const bool common = CommonSizes::Fits(window, num_views);
   if (switches.naive_kernel && !common) {
     throw std::invalid_argument(
-        "the naive kernel is made for 11 by 11 samples and at most 32 views");
+        "the naive kernel is made for 6 by 6 samples and at most 32 views");
   }
   return switches.naive_kernel       ? KernelKind::kNaive
          : switches.precise_textures ? KernelKind::kPrecise
