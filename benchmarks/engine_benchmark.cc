@@ -186,8 +186,8 @@ BENCHMARK(BM_TwoPassesSideBySide)
 
 // What a level costs per megapixel: the hand-up from half the size, and a
 // photometric and a geometric pass with the numbers of a level that is not the
-// coarsest. Next to it, with `colmap` 1, what COLMAP does on its only level: five
-// iterations in both passes, 15 views, full windows, all hypotheses.
+// coarsest. Next to it, with `colmap` 1, what COLMAP does on its only level:
+// five iterations in both passes, 15 views, full windows, all hypotheses.
 void BM_Level(benchmark::State& state) {
   const bool colmap = state.range(0) != 0;
   const SyntheticPlane scene = MakeScene(160, 120, 10);
@@ -206,8 +206,8 @@ void BM_Level(benchmark::State& state) {
   const Map<float> coarse_depth = ReduceDepth(truth.depth, 80, 60);
   const Map<Vec3> coarse_normal(80, 60, scene.normal());
   Camera coarse_camera = reference.camera;
-  for (double* value : {&coarse_camera.fx, &coarse_camera.fy,
-                        &coarse_camera.cx, &coarse_camera.cy}) {
+  for (double* value : {&coarse_camera.fx, &coarse_camera.fy, &coarse_camera.cx,
+                        &coarse_camera.cy}) {
     *value /= 2;
   }
   for (auto _ : state) {

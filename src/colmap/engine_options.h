@@ -31,8 +31,9 @@ colmap::mvs::PatchMatchOptions PassOptions(
     colmap::mvs::PatchMatchOptions options, Pass pass, int level = 0,
     int num_levels = 1);
 
-// Key of the random draws for a view in a pass at a level. It does not depend on other
-// views, nor on their order, so that a resumed run gives the same maps.
+// Key of the random draws for a view in a pass at a level. It does not depend
+// on other views, nor on their order, so that a resumed run gives the same
+// maps.
 uint64_t ViewSeed(uint64_t seed, const std::string& image_name, Pass pass,
                   int level = 0);
 

@@ -50,8 +50,8 @@ Map<float> ProblemReader::ReadDepth(int key, Pass pass) const {
   };
   // A view that only others see as a source, with a map from an earlier run,
   // has one of full size alone.
-  if (level > 0 && !colmap::ExistsPath(
-                       plan_.MapPath(MapKind::kDepth, view, pass, level))) {
+  if (level > 0 &&
+      !colmap::ExistsPath(plan_.MapPath(MapKind::kDepth, view, pass, level))) {
     const SceneView& size = ViewOf(key);
     return ReduceDepth(read(0), size.width, size.height);
   }
@@ -60,8 +60,8 @@ Map<float> ProblemReader::ReadDepth(int key, Pass pass) const {
 
 Map<Vec3> ProblemReader::ReadNormal(int key, Pass pass) const {
   const int num_views = static_cast<int>(plan_.views[0].size());
-  const std::string path = plan_.MapPath(MapKind::kNormal, key % num_views,
-                                         pass, key / num_views);
+  const std::string path =
+      plan_.MapPath(MapKind::kNormal, key % num_views, pass, key / num_views);
   CheckMapFile(path, MapKind::kNormal, ViewOf(key).width, ViewOf(key).height);
   return ReadNormalMap(path);
 }

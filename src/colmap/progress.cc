@@ -61,8 +61,8 @@ int Progress::BeginView(Pass pass, int level, const std::string& what,
   last_update_ = last_count_;
   const std::string name =
       (level > 0 ? Format("level %d ", level) : "") + PassName(pass);
-  running_[next_view_] = {place_,      name + " " + what, megapixels, work,
-                          last_count_, last_cpu_count_};
+  running_[next_view_] = {place_, name + " " + what, megapixels,
+                          work,   last_count_,       last_cpu_count_};
   return next_view_++;
 }
 
@@ -155,8 +155,8 @@ void Progress::PrintSummary() const {
     } else if (totals.megapixels > 0) {
       const double pass_seconds = totals.seconds / totals.megapixels;
       const double pass_cpu_seconds = totals.cpu_seconds / totals.megapixels;
-      text += Format("%s %.1f (CPU %.1f), ", PassName(place.pass),
-                     pass_seconds, pass_cpu_seconds);
+      text += Format("%s %.1f (CPU %.1f), ", PassName(place.pass), pass_seconds,
+                     pass_cpu_seconds);
       full_megapixels = std::max(full_megapixels, totals.megapixels);
       seconds += pass_seconds;
       cpu_seconds += pass_cpu_seconds;

@@ -13,8 +13,8 @@ namespace tapa {
 void PrintWarning(const std::string& text);
 
 // Tells the user how far a run is: a line per finished view and, on a terminal,
-// one that is renewed in place while a view is computed. Several views may be computed at a time, by threads
-// of their own.
+// one that is renewed in place while a view is computed. Several views may be
+// computed at a time, by threads of their own.
 class Progress {
  public:
   // total_work: what the run has to compute, in any unit.

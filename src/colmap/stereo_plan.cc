@@ -292,8 +292,8 @@ void CheckMaps(StereoPlan* plan) {
 }
 
 // Maps of full size are what the user gets. A coarser one is needed for a view
-// that starts from it, and for one that has that view as a source in a geometric
-// pass.
+// that starts from it, and for one that has that view as a source in a
+// geometric pass.
 void FindNeeded(StereoPlan* plan) {
   const size_t num_problems = plan->problems.size();
   std::vector<int> problem_of(plan->views[0].size(), -1);
@@ -324,8 +324,8 @@ void FindNeeded(StereoPlan* plan) {
 // other options or photographs, may have left them when it was stopped.
 bool IsUsable(const StereoPlan& plan, const PassPlan& pass) {
   try {
-    const std::optional<OptionValues> recorded = ReadOptionsRecord(
-        plan.location.RecordPath(pass.pass, pass.level));
+    const std::optional<OptionValues> recorded =
+        ReadOptionsRecord(plan.location.RecordPath(pass.pass, pass.level));
     if (!recorded || *recorded != pass.record) {
       return false;
     }

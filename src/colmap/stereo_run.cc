@@ -38,8 +38,7 @@ double TotalWork(const StereoPlan& plan) {
   for (const PassPlan& pass : plan.passes) {
     for (size_t i = 0; i < plan.problems.size(); ++i) {
       if (pass.Computes(i)) {
-        total +=
-            Work(pass, plan.View(plan.problems[i].reference, pass.level));
+        total += Work(pass, plan.View(plan.problems[i].reference, pass.level));
       }
     }
   }
@@ -93,9 +92,8 @@ void StereoRun::PrepareFolders() const {
       for (const MapKind kind :
            {MapKind::kDepth, MapKind::kNormal, MapKind::kConsistencyGraph}) {
         if (kind != MapKind::kConsistencyGraph || pass.writes_graphs) {
-          map_folders.insert(
-              colmap::GetParentDir(
-                  plan_.MapPath(kind, view, pass.pass, pass.level)));
+          map_folders.insert(colmap::GetParentDir(
+              plan_.MapPath(kind, view, pass.pass, pass.level)));
         }
       }
       if (pass.writes_pictures) {
@@ -190,11 +188,11 @@ bool StereoRun::ComputeProblem(size_t number, const PassPlan& pass,
   }
   const ViewIndices& problem = plan_.problems[number];
   const SceneView& view = plan_.View(problem.reference, pass.level);
-  const int progress_view = progress_.BeginView(
-      pass.pass, pass.level,
-      std::to_string(number + 1) + "/" + std::to_string(NumViews()) + " " +
-          view.name,
-      Megapixels(view), Work(pass, view));
+  const int progress_view =
+      progress_.BeginView(pass.pass, pass.level,
+                          std::to_string(number + 1) + "/" +
+                              std::to_string(NumViews()) + " " + view.name,
+                          Megapixels(view), Work(pass, view));
   if (!ComputeView({pass, problem, view, progress_view}, device)) {
     return false;
   }

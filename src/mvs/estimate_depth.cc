@@ -76,7 +76,8 @@ void CheckProblem(const Options& options, const Problem& problem) {
   if (!starts_at_random &&
       !(HasSize(problem.depth, image) && HasSize(problem.normal, image))) {
     Fail(
-        "an estimation that starts from maps, as the geometric pass does, needs "
+        "an estimation that starts from maps, as the geometric pass does, "
+        "needs "
         "a depth and a normal map of the reference image's size");
   }
 }

@@ -136,8 +136,8 @@ void VisitTapaOptions(Options* options, const Visitor& visit) {
          Range::From(0, 1));
 }
 
-// How much is tried before an estimate is kept, where COLMAP has no choice. What
-// each is for stands in VisitSearchOptions. COLMAP's own: true and 0.
+// How much is tried before an estimate is kept, where COLMAP has no choice.
+// What each is for stands in VisitSearchOptions. COLMAP's own: true and 0.
 struct SearchOptions {
   bool try_all = false;
   double hysteresis = 0.1;

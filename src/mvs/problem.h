@@ -23,9 +23,9 @@ struct Problem {
   // for TAPA's superpixels; not there: they see the grey image. Borrowed.
   const Map<Rgb>* reference_color = nullptr;
   // Where the estimation starts: depth in scene units and unit normals in the
-  // reference camera's frame, both of the reference image's size. Pixels without
-  // a depth (IsDepth) or whose normal faces away from the camera start at
-  // random. A photometric pass without them starts at random altogether.
+  // reference camera's frame, both of the reference image's size. Pixels
+  // without a depth (IsDepth) or whose normal faces away from the camera start
+  // at random. A photometric pass without them starts at random altogether.
   Map<float> depth;
   Map<Vec3> normal;
 };

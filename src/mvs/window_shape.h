@@ -16,8 +16,8 @@ struct WindowShape {
   int step = 1;
   // Samples in a row and in a column.
   int row_samples = 11;
-  // Sparse windows go without their corners, the samples that are farthest away:
-  // of 36 samples 32 are left, a whole number of SIMD vectors.
+  // Sparse windows go without their corners, the samples that are farthest
+  // away: of 36 samples 32 are left, a whole number of SIMD vectors.
   bool has_corners = true;
   // Standard deviations of the weights: over distance in pixels, and over
   // difference in intensity (0 to 1).

@@ -153,8 +153,9 @@ TEST(CudaBackend, GoesOnBesideSmallerProblems) {
   const auto sweep = [&](Backend* backend, const SyntheticPlane& scene) {
     const Start start = StartNearTruth(scene);
     backend->SetEstimate(start.depth, start.normal, keep_going);
-    backend->Sweep(Schedule(options, scene.problem().sources.size(), true).At(0),
-                   keep_going);
+    backend->Sweep(
+        Schedule(options, scene.problem().sources.size(), true).At(0),
+        keep_going);
   };
   const auto first = MakeCudaBackend(options, large.problem());
   const auto second = MakeCudaBackend(options, small.problem());

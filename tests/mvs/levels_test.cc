@@ -158,15 +158,13 @@ TEST(Levels, AWallThatWasFoundSurvivesMoreOften) {
   const auto share = [&](double hysteresis) {
     Options options = FineOptions();
     options.search.hysteresis = hysteresis;
-    const std::optional<Estimate> estimate =
-        EstimateDepth(options, [&] {
-          Problem problem = scene.problem();
-          problem.depth = scene.depth();
-          problem.normal =
-              Map<Vec3>(scene_options.width, scene_options.height,
-                        scene.normal());
-          return problem;
-        }());
+    const std::optional<Estimate> estimate = EstimateDepth(options, [&] {
+      Problem problem = scene.problem();
+      problem.depth = scene.depth();
+      problem.normal =
+          Map<Vec3>(scene_options.width, scene_options.height, scene.normal());
+      return problem;
+    }());
     return ShareWithin(estimate->depth, scene.depth(), 0.005, &scene.wall());
   };
   const double with = share(Options().search.hysteresis);

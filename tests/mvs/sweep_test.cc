@@ -177,7 +177,8 @@ SweepState MakeState(const ProblemData& data, const Map<float>& depth,
 void RunSweep(const ProblemData& data, const Options& options, int index,
               const GuideMaps& guide, SweepState* state,
               SweepScratch* scratch) {
-  const SweepParams params = Schedule(options, data.num_sources, true).At(index);
+  const SweepParams params =
+      Schedule(options, data.num_sources, true).At(index);
   SweepLines(
       data, params, guide.Guide(), 0,
       NumLines(params.SweepDirection(), data.width, data.height),

@@ -38,8 +38,8 @@ HWY_INLINE void CopyIntensities(const Window& window, const RefImage& image,
       std::memcpy(to, from, window.row_samples);
       to += window.row_samples;
     } else {
-      const bool is_cut = !window.has_corners &&
-                          (y == 0 || y + 1 == window.row_samples);
+      const bool is_cut =
+          !window.has_corners && (y == 0 || y + 1 == window.row_samples);
       for (int x = is_cut; x < window.row_samples - is_cut; ++x) {
         *to++ = from[x * window.step];
       }

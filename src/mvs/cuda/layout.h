@@ -11,8 +11,8 @@ namespace tapa {
 // Sizes that a kernel knows when it is compiled, so that addresses in the
 // scratch become constants and loops over the window are unrolled.
 
-// Most problems: a window of 6 by 6 samples, every second of 11 pixels, and up to
-// 32 views.
+// Most problems: a window of 6 by 6 samples, every second of 11 pixels, and up
+// to 32 views.
 struct CommonSizes {
   static constexpr int kMaxViews = 32;
   static constexpr int kRowSamples = 6;

@@ -133,9 +133,8 @@ TAPA_INLINE void MakeHypotheses(const PixelContext& p,
   // NCC 0.5: what is not seen in the views is looked for farther away, such as
   // what a coarser level was too coarse for.
   constexpr float kLostCost = 0.5f;
-  const float perturbation = drawn_cost > kLostCost
-                                 ? p.params.lost_perturbation
-                                 : p.params.perturbation;
+  const float perturbation = drawn_cost > kLostCost ? p.params.lost_perturbation
+                                                    : p.params.perturbation;
   const float random_depth =
       PerturbDepth(p.random, perturbation, p.current.depth);
   const Vec3 random_normal =
@@ -153,8 +152,7 @@ TAPA_INLINE void MakeHypotheses(const PixelContext& p,
   hypotheses[kRandom] = {both || depth_alone ? random_depth : 0.0f,
                          both ? random_normal : Vec3()};
   hypotheses[kRandomNormal] = {
-      p.current.depth,
-      TriesRandom(p, kRandomNormal) ? random_normal : Vec3()};
+      p.current.depth, TriesRandom(p, kRandomNormal) ? random_normal : Vec3()};
   hypotheses[kRandomDepth] = {random_depth,
                               depth_alone ? p.current.normal : Vec3()};
   hypotheses[kFinePlane] = p.guide.fine;

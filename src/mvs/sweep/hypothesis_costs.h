@@ -110,8 +110,8 @@ TAPA_INLINE CostWeights WeightsOf(const TextureWeights& weights,
 // draws, so that it wins only if it is clearly better. Where there is little
 // texture noise decides between hypotheses of nearly the same cost: what a
 // coarser level or another pass has seen there better shall not be lost to it.
-// Not so for planes from outside, which are made for such places. variance: that
-// of the reference patch's intensities (0 to 255).
+// Not so for planes from outside, which are made for such places. variance:
+// that of the reference patch's intensities (0 to 255).
 TAPA_INLINE float Hysteresis(const SweepParams& params, int hypothesis,
                              float variance) {
   // As TapaOptions::textureness_variance.
