@@ -22,47 +22,38 @@ double CacheBytes(const StereoPlan& plan) {
 // A depth map takes four times the bytes of its photograph.
 ProblemReader::ProblemReader(const StereoPlan& plan)
     : plan_(plan),
-      photos_(CacheBytes(plan) / 5,
-              [this](int key) { return ReadPhoto(ViewOf(key)); }),
+      photos_(
+          CacheBytes(plan) / 5,
+          [this](int key) {
+            const int level_size = Key(0, 1);
+            return ReadPhoto(plan_.View(key % level_size, key / level_size));
+          }),
       depth_maps_(CacheBytes(plan) * 4 / 5, [this](int key) {
-        return ReadDepth(key, Pass::kPhotometric);
+        const int level_size = Key(0, 1);
+        return ReadDepth(key % level_size, key / level_size,
+                         Pass::kPhotometric);
       }) {}
 
 int ProblemReader::Key(int view, int level) const {
   return level * static_cast<int>(plan_.views[0].size()) + view;
 }
 
-const SceneView& ProblemReader::ViewOf(int key) const {
-  const int num_views = static_cast<int>(plan_.views[0].size());
-  return plan_.View(key % num_views, key / num_views);
-}
-
-Map<float> ProblemReader::ReadDepth(int key, Pass pass) const {
-  const int num_views = static_cast<int>(plan_.views[0].size());
-  const int view = key % num_views;
-  const int level = key / num_views;
-  const auto read = [&](int at_level) {
-    const std::string path =
-        plan_.MapPath(MapKind::kDepth, view, pass, at_level);
-    const SceneView& size = plan_.View(view, at_level);
-    CheckMapFile(path, MapKind::kDepth, size.width, size.height);
-    return ReadDepthMap(path);
-  };
+Map<float> ProblemReader::ReadDepth(int view, int level, Pass pass) const {
+  const std::string path = plan_.MapPath(MapKind::kDepth, view, pass, level);
+  const SceneView& size = plan_.View(view, level);
   // A view that only others see as a source, with a map from an earlier run,
   // has one of full size alone.
-  if (level > 0 &&
-      !colmap::ExistsPath(plan_.MapPath(MapKind::kDepth, view, pass, level))) {
-    const SceneView& size = ViewOf(key);
-    return ReduceDepth(read(0), size.width, size.height);
+  if (level > 0 && !colmap::ExistsPath(path)) {
+    return ReduceDepth(ReadDepth(view, 0, pass), size.width, size.height);
   }
-  return read(level);
+  CheckMapFile(path, MapKind::kDepth, size.width, size.height);
+  return ReadDepthMap(path);
 }
 
-Map<Vec3> ProblemReader::ReadNormal(int key, Pass pass) const {
-  const int num_views = static_cast<int>(plan_.views[0].size());
-  const std::string path =
-      plan_.MapPath(MapKind::kNormal, key % num_views, pass, key / num_views);
-  CheckMapFile(path, MapKind::kNormal, ViewOf(key).width, ViewOf(key).height);
+Map<Vec3> ProblemReader::ReadNormal(int view, int level, Pass pass) const {
+  const std::string path = plan_.MapPath(MapKind::kNormal, view, pass, level);
+  const SceneView& size = plan_.View(view, level);
+  CheckMapFile(path, MapKind::kNormal, size.width, size.height);
   return ReadNormalMap(path);
 }
 
@@ -71,13 +62,14 @@ Map<Vec3> ProblemReader::ReadNormal(int key, Pass pass) const {
 DepthNormalMaps ProblemReader::ReadStart(const PassPlan& pass,
                                          const View& reference, int view) {
   if (pass.pass == Pass::kGeometric) {
-    const int key = Key(view, pass.level);
-    return {*depth_maps_.Get(key), ReadNormal(key, Pass::kPhotometric)};
+    return {*depth_maps_.Get(Key(view, pass.level)),
+            ReadNormal(view, pass.level, Pass::kPhotometric)};
   }
-  const int key = Key(view, pass.level + 1);
+  const int coarser = pass.level + 1;
   const Pass last = plan_.passes.back().pass;
-  return HandUp({ReadDepth(key, last), ReadNormal(key, last)},
-                ViewOf(key).camera, reference);
+  return HandUp(
+      {ReadDepth(view, coarser, last), ReadNormal(view, coarser, last)},
+      plan_.View(view, coarser).camera, reference);
 }
 
 bool ProblemReader::ReadPhotos(const std::function<bool()>& stopped) {

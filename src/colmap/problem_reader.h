@@ -42,12 +42,11 @@ class ProblemReader {
                                      const std::function<bool()>& stopped);
 
  private:
-  // A view at a level, as caches know it, and the other way round.
+  // A view at a level, as one number for the caches.
   int Key(int view, int level) const;
-  const SceneView& ViewOf(int key) const;
   // Read maps of a pass.
-  Map<float> ReadDepth(int key, Pass pass) const;
-  Map<Vec3> ReadNormal(int key, Pass pass) const;
+  Map<float> ReadDepth(int view, int level, Pass pass) const;
+  Map<Vec3> ReadNormal(int view, int level, Pass pass) const;
   DepthNormalMaps ReadStart(const PassPlan& pass, const View& reference,
                             int view);
 

@@ -28,14 +28,21 @@ Eigen::Map<const Eigen::Vector3d> Translation(const Camera& camera) {
 
 }  // namespace
 
-CameraTable::CameraTable(const Problem& problem) {
+RefCamera MakeRefCamera(const Camera& camera) {
+  const Matrix3 inverse_K = IndexIntrinsics(camera).inverse();
+  RefCamera result;
+  result.inv_fx = static_cast<float>(inverse_K(0, 0));
+  result.inv_fy = static_cast<float>(inverse_K(1, 1));
+  result.offset_x = static_cast<float>(inverse_K(0, 2));
+  result.offset_y = static_cast<float>(inverse_K(1, 2));
+  return result;
+}
+
+CameraTable::CameraTable(const Problem& problem)
+    : reference_(MakeRefCamera(problem.reference.camera)) {
   const Camera& ref = problem.reference.camera;
   const Matrix3 K = IndexIntrinsics(ref);
   const Matrix3 inverse_K = K.inverse();
-  reference_.inv_fx = static_cast<float>(inverse_K(0, 0));
-  reference_.inv_fy = static_cast<float>(inverse_K(1, 1));
-  reference_.offset_x = static_cast<float>(inverse_K(0, 2));
-  reference_.offset_y = static_cast<float>(inverse_K(1, 2));
 
   count_ = static_cast<int>(problem.sources.size());
   padded_count_ = (count_ + SourceCameras::kPadding - 1) /

@@ -9,6 +9,9 @@
 
 namespace tapa {
 
+// A camera in the form that gives the rays of its pixels.
+RefCamera MakeRefCamera(const Camera& camera);
+
 // Computes and owns the cameras of a problem in the form that sweeps read: for
 // indices of pixels, whole numbers being their centres.
 class CameraTable {

@@ -4,18 +4,13 @@
 #include <cstdint>
 
 #include "src/base/depth.h"
+#include "src/mvs/camera_table.h"
 
 namespace tapa {
 namespace {
 
 // Smaller images show too little: windows of 11 pixels cover whole objects.
 constexpr int kMinLongestSide = 256;
-
-// The ray through a pixel's centre, scaled to depth 1 (view.h).
-Vec3 RayOf(const Camera& camera, int row, int col) {
-  return {static_cast<float>((col + 0.5 - camera.cx) / camera.fx),
-          static_cast<float>((row + 0.5 - camera.cy) / camera.fy), 1.0f};
-}
 
 // The index, of `count`, of the coarse pixel that the centre of a fine one lies
 // in. Exact, as integers.
@@ -44,6 +39,8 @@ DepthNormalMaps HandUp(const DepthNormalMaps& estimate, const Camera& coarse,
                        const View& fine) {
   const int width = fine.image->width();
   const int height = fine.image->height();
+  const RefCamera coarse_rays = MakeRefCamera(coarse);
+  const RefCamera fine_rays = MakeRefCamera(fine.camera);
   DepthNormalMaps result = {Map<float>(width, height),
                             Map<Vec3>(width, height)};
   for (int row = 0; row < height; ++row) {
@@ -53,8 +50,8 @@ DepthNormalMaps HandUp(const DepthNormalMaps& estimate, const Camera& coarse,
       const float depth = estimate.depth.At(from_row, from_col);
       const Vec3& normal = estimate.normal.At(from_row, from_col);
       const float distance =
-          depth * Dot(normal, RayOf(coarse, from_row, from_col));
-      const float slope = Dot(normal, RayOf(fine.camera, row, col));
+          depth * Dot(normal, coarse_rays.Ray(from_row, from_col));
+      const float slope = Dot(normal, fine_rays.Ray(row, col));
       const float fine_depth = distance / slope;
       // A pixel's width away a depth that differs by half is none of the
       // surface that the coarse pixel saw.
