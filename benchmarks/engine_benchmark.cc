@@ -194,11 +194,12 @@ void BM_Level(benchmark::State& state) {
   Options options;
   options.num_threads = 1;
   options.filter = false;
-  options.first_perturbation = colmap ? 1 : 1.0 / 32;
+  options.first_perturbation = colmap ? 1 : 1.0 / 128;
   if (colmap) {
     options.num_samples = 15;
     options.window_step = 1;
     options.search.try_all = true;
+    options.search.measure_all = true;
     options.search.hysteresis = 0;
   }
   const View& reference = scene.problem().reference;
@@ -219,13 +220,13 @@ void BM_Level(benchmark::State& state) {
       photometric.normal = std::move(start.normal);
     }
     options.geom_consistency = false;
-    options.num_iterations = colmap ? 5 : 2;
+    options.num_iterations = colmap ? 5 : 1;
     std::optional<Estimate> estimate = EstimateDepth(options, photometric);
     Problem geometric = truth;
     geometric.depth = std::move(estimate->depth);
     geometric.normal = std::move(estimate->normal);
     options.geom_consistency = true;
-    options.num_iterations = colmap ? 5 : 1;
+    options.num_iterations = colmap ? 5 : 2;
     benchmark::DoNotOptimize(EstimateDepth(options, geometric));
   }
   state.counters["s_per_megapixel"] = benchmark::Counter(

@@ -13,7 +13,8 @@ def _stereo(**options):
 # What COLMAP takes, and so the paper; in the program colmap_defaults says the same, but
 # options after it would do nothing.
 _COLMAP = _stereo(num_levels=1, num_iterations=5, num_geom_iterations=5, num_samples=15,
-                  window_step=1, geom_perturbation=1, try_all=1, hysteresis=0)
+                  window_step=1, geom_perturbation=1, try_all=1, measure_all=1,
+                  hysteresis=0)
 _TAPA = _stereo(tapa=1)
 _PAPER = _COLMAP + _TAPA + _stereo(tapa_completion=0, tapa_min_textureness=0.5)
 
@@ -31,9 +32,11 @@ for _name, _label, _options in (
         ("one-level", "one level", _stereo(num_levels=1)),
         ("no-hysteresis", "no hysteresis", _stereo(hysteresis=0)),
         ("all", "all hypotheses", _stereo(try_all=1)),
+        ("measure-all", "all views measured", _stereo(measure_all=1)),
         ("8-views", "8 views drawn", _stereo(num_samples=8)),
         ("full", "full windows", _stereo(window_step=1)),
-        ("long", "4 iterations at every level", _stereo(num_fine_iterations=4))):
+        ("long", "4 iterations at every level", _stereo(num_fine_iterations=4)),
+        ("short", "1 geometric iteration", _stereo(num_geom_iterations=1))):
     for _base in ("plain", "tapa"):
         _ALL[f"{_base}-{_name}"] = f"{_ALL[_base][0]}, {_label}", _ALL[_base][1] + _options
 for _name, _label, _option in (("weights", "weights", "texture_weighting"),

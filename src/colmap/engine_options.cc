@@ -58,6 +58,7 @@ void TakeColmapDefaults(PatchMatchOptions* options) {
   options->window_step = 1;
   options->first_perturbation = options->geom_perturbation = 1;
   options->search.try_all = true;
+  options->search.measure_all = true;
   options->search.hysteresis = 0;
 }
 

@@ -17,10 +17,10 @@ struct HostOptions {
   int num_threads = -1;
   int seed = 0;
   int num_levels = -1;
-  int num_fine_iterations = 2;
-  int num_geom_iterations = 1;
+  int num_fine_iterations = 1;
+  int num_geom_iterations = 2;
   double first_perturbation = 1;
-  double fine_perturbation = 0.03125;
+  double fine_perturbation = 0.0078125;
   double geom_perturbation = 0.125;
   SearchOptions search;
   bool colmap_defaults = false;

@@ -137,9 +137,11 @@ void VisitTapaOptions(Options* options, const Visitor& visit) {
 }
 
 // How much is tried before an estimate is kept, where COLMAP has no choice.
-// What each is for stands in VisitSearchOptions. COLMAP's own: true and 0.
+// What each is for stands in VisitSearchOptions. COLMAP's own: true, true and
+// 0.
 struct SearchOptions {
   bool try_all = false;
+  bool measure_all = false;
   double hysteresis = 0.1;
 };
 
@@ -152,6 +154,11 @@ void VisitSearchOptions(Options* options, const Visitor& visit) {
                     "drawn, and the plane of the pixel before even where it is "
                     "the pixel's own"},
         &options->try_all);
+  visit(OptionEntry{"measure_all",
+                    "Measure what a sweep chooses in all source views; "
+                    "otherwise those that were not drawn keep what they saw "
+                    "when they last were"},
+        &options->measure_all);
   visit(OptionEntry{"hysteresis",
                     "By how much (of 1 - NCC) another hypothesis must be "
                     "better than an estimate from a coarser level or another "

@@ -14,6 +14,7 @@ Schedule::Schedule(const Options& options, int num_sources, bool has_start)
   common_.seed = options.seed;
   common_.num_samples = options.num_samples;
   common_.try_all = options.search.try_all;
+  common_.measure_all = options.search.measure_all;
   if (has_start) {
     common_.hysteresis = static_cast<float>(options.search.hysteresis);
   }

@@ -155,6 +155,7 @@ TEST(PassOptions, ColmapDefaultsTakeTheirPlace) {
     EXPECT_EQ(result.window_step, 1);
     EXPECT_EQ(result.first_perturbation, 1);
     EXPECT_TRUE(result.search.try_all);
+    EXPECT_TRUE(result.search.measure_all);
     EXPECT_EQ(result.search.hysteresis, 0);
   }
 }

@@ -56,12 +56,13 @@ TEST(OptionsOfMaps, HasWhatChangesMaps) {
                            "num_levels",
                            "first_perturbation",
                            "try_all",
+                           "measure_all",
                            "hysteresis",
                            "tapa",
                            "rays"}) {
     EXPECT_EQ(values.count(name), 1) << name;
   }
-  EXPECT_EQ(values.size(), 26) << "Is an option missing in the list above?";
+  EXPECT_EQ(values.size(), 27) << "Is an option missing in the list above?";
 }
 
 TEST(OptionsOfMaps, LeavesOutWhatNothingReads) {

@@ -486,7 +486,8 @@ void Sweep(const Options& options, const Problem& problem,
         }
       }
       for (int m = 0; m < num_sources; ++m) {
-        if (best != 0) {
+        if (best != 0 && (options.search.measure_all ||
+                          std::count(drawn.begin(), drawn.end(), m) > 0)) {
           state->cost[at(i, m)] = RoundCost(
               PhotometricCost(options, problem, row, col, planes[best], m));
         }

@@ -154,10 +154,12 @@ struct SweepCase {
   bool geometric;
   bool guided;
   int index;
+  bool measures_all = false;
 
   friend void PrintTo(const SweepCase& c, std::ostream* out) {
     *out << (c.geometric ? "geometric" : "photometric")
-         << (c.guided ? " guided" : "") << " sweep " << c.index;
+         << (c.guided ? " guided" : "") << " sweep " << c.index
+         << (c.measures_all ? ", all views measured" : "");
   }
 };
 
@@ -199,6 +201,7 @@ TEST_P(SweepTest, MakesTheChoicesOfTheReference) {
   options.num_iterations = 5;
   options.geom_consistency = GetParam().geometric;
   options.filter = false;
+  options.search.measure_all = GetParam().measures_all;
   options.seed = 11;
   const Problem problem =
       GetParam().geometric ? scene.GeometricProblem() : scene.problem();
@@ -291,7 +294,9 @@ INSTANTIATE_TEST_SUITE_P(
                     SweepCase{true, false, 3}, SweepCase{true, false, 14},
                     SweepCase{false, true, 0}, SweepCase{false, true, 5},
                     SweepCase{false, true, 10}, SweepCase{true, true, 1},
-                    SweepCase{true, true, 4}, SweepCase{true, true, 11}),
+                    SweepCase{true, true, 4}, SweepCase{true, true, 11},
+                    SweepCase{false, false, 6, true},
+                    SweepCase{true, true, 7, true}),
     [](const auto& info) {
       return std::string(info.param.geometric ? "Geometric" : "Photometric") +
              (info.param.guided ? "Guided" : "") +

@@ -158,7 +158,7 @@ TEST(Tapa, WithoutItsPartsIsThePlainAlgorithm) {
     const Problem problem =
         geometric ? scene.GeometricProblem() : scene.problem();
     Options options = SweepsOnly(geometric);
-    options.num_iterations = 2;
+    options.num_iterations = 3;
     options.tapa.texture_weighting = false;
     options.tapa.fine_superpixels = false;
     options.tapa.coarse_superpixels = false;
@@ -182,7 +182,7 @@ TEST(Tapa, WithoutItsPartsIsThePlainAlgorithm) {
     }
     // Parts do nothing as long as TAPA is off.
     Options off = TapaPass(geometric);
-    off.num_iterations = 2;
+    off.num_iterations = 3;
     off.filter = false;
     off.tapa.enabled = false;
     EXPECT_TRUE(SameEstimate(*EstimateDepth(off, problem), *expected));

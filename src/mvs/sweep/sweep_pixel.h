@@ -23,6 +23,28 @@ struct Choice {
   bool is_consistent;
 };
 
+// Gives the pixel the costs of the hypothesis that it has chosen, which the
+// drawn views have measured already. The others keep theirs, of an estimate
+// that was the pixel's before: nearly the same one in most sweeps, and a view
+// that sees the pixel is drawn soon.
+template <class Lanes, class Sources>
+TAPA_INLINE void TakeCosts(const PixelContext& p, Sources& sources, int chosen,
+                           int num_distinct) {
+  const PixelScratch& s = p.scratch;
+  int num_measured = num_distinct;
+  if (p.params.measure_all) {
+    HypothesisList list;
+    list.Add(chosen);
+    MeasureCosts<Lanes>(p, sources, list, num_distinct, p.views.count);
+    num_measured = p.views.count;
+  }
+  for (int k = Lanes::First(); k < num_measured; k += Lanes::Step()) {
+    const int m = s.order[k];
+    s.cost[m] = s.hypothesis_cost[chosen * s.stride + m];
+  }
+  Lanes::Sync();
+}
+
 // Messages and selection probabilities from the costs of the new estimate.
 template <class Lanes>
 TAPA_INLINE void UpdateSelection(const PixelContext& p) {
@@ -57,13 +79,7 @@ TAPA_INLINE Choice SweepPixel(const PixelContext& p,
   const int best = ChooseHypothesis<Lanes>(p, sources, num_distinct);
   const DepthNormal chosen = s.hypothesis[best];
   if (best != kCurrent) {
-    // In the drawn views it is measured already.
-    HypothesisList list;
-    list.Add(best);
-    MeasureCosts<Lanes>(p, sources, list, num_distinct, p.views.count);
-    for (int m = Lanes::First(); m < p.views.count; m += Lanes::Step()) {
-      s.cost[m] = s.hypothesis_cost[best * s.stride + m];
-    }
+    TakeCosts<Lanes>(p, sources, best, num_distinct);
   }
   UpdateSelection<Lanes>(p);
 
