@@ -1,7 +1,7 @@
-"""Pictures that the scene wraps around its books, fabrics and frames.
+"""Pictures that scenes wrap around their books, fabrics and frames.
 
-Everything is drawn from fixed seeds; nothing is read. `write_all(folder)`
-writes PNG files that room.pov looks up by name.
+Each is drawn by a function of a random generator, in linear reflectances; nothing is
+read. save() writes the PNG files that a scene.pov looks up by name.
 """
 
 import os
@@ -252,6 +252,83 @@ def tweed(rng):
     return weave(rng, base, 8, 0.13)
 
 
+def page(rng, tint=(0.84, 0.83, 0.79)):
+    """A printed notice: a heading, lines of text, a small figure. 0.21 m x 0.30 m."""
+    height, width = 420, 294
+    canvas = np.ones((height, width, 3), np.float32) * np.array(tint, np.float32)
+    ink = (0.10, 0.10, 0.12)
+    cv2.putText(canvas, str(rng.choice(WORDS)), (24, 52), cv2.FONT_HERSHEY_DUPLEX, 1.1, ink, 2,
+                cv2.LINE_AA)
+    figure = int(rng.integers(3, 9))
+    for line in range(15):
+        y = 88 + 21 * line
+        if figure <= line < figure + 5:
+            continue
+        cv2.putText(canvas, " ".join(rng.choice(WORDS, 4)).lower()[:34], (24, y),
+                    cv2.FONT_HERSHEY_SIMPLEX, 0.4, ink, 1, cv2.LINE_AA)
+    top = 76 + 21 * figure
+    for bar in range(10):
+        tall = int(rng.integers(15, 90))
+        colour = tuple(float(c) for c in rng.uniform(0.1, 0.6, 3))
+        cv2.rectangle(canvas, (30 + 24 * bar, top + 95 - tall), (48 + 24 * bar, top + 95), colour,
+                      -1)
+    return canvas
+
+
+def screen(rng):
+    """What a monitor shows: windows with text over a blue picture."""
+    height, width = 450, 800
+    field = fractal_noise(rng, height, width, 220, 4)[..., None]
+    canvas = np.ascontiguousarray((np.array((0.03, 0.09, 0.20)) + field * np.array(
+        (0.10, 0.20, 0.30))).astype(np.float32))
+    for left, top, right, bottom in ((30, 30, 470, 400), (500, 60, 770, 250),
+                                     (520, 280, 760, 410)):
+        cv2.rectangle(canvas, (left, top), (right, bottom), (0.80, 0.81, 0.82), -1)
+        cv2.rectangle(canvas, (left, top), (right, top + 22), (0.25, 0.27, 0.30), -1)
+        for y in range(top + 46, bottom - 8, 18):
+            text = " ".join(rng.choice(WORDS, 6)).lower()
+            cv2.putText(canvas, text[:(right - left - 40) // 9], (left + 14, y),
+                        cv2.FONT_HERSHEY_SIMPLEX, 0.42, (0.1, 0.1, 0.12), 1, cv2.LINE_AA)
+    return canvas
+
+
+def whiteboard(rng):
+    """Mostly white: a few lines by hand, a diagram, and what was not wiped well.
+    1.6 m x 1.0 m."""
+    height, width = 700, 1120
+    canvas = np.ones((height, width, 3), np.float32) * np.array((0.82, 0.83, 0.83), np.float32)
+    canvas *= 0.985 + 0.03 * fractal_noise(rng, height, width, 200, 3)[..., None]
+    canvas = np.ascontiguousarray(canvas)
+    blue, red = (0.08, 0.12, 0.40), (0.50, 0.08, 0.08)
+    for line in range(4):
+        cv2.putText(canvas, " ".join(rng.choice(WORDS, 2)).lower(), (70, 90 + 55 * line),
+                    cv2.FONT_HERSHEY_SCRIPT_SIMPLEX, 1.3, blue, 2, cv2.LINE_AA)
+    boxes = [(int(x), int(y)) for x, y in zip(rng.integers(120, 480, 4), (340, 430, 520, 600))]
+    for (x, y), (u, v) in zip(boxes, boxes[1:]):
+        cv2.line(canvas, (x, y), (u, v), red, 2, cv2.LINE_AA)
+    for x, y in boxes:
+        cv2.ellipse(canvas, (x, y), (60, 28), 0, 0, 360, blue, 2, cv2.LINE_AA)
+    return canvas
+
+
+def quilt(rng):
+    """Patchwork of plain and patterned squares. 1.5 m x 1.5 m."""
+    side, count = 150, 8
+    colours = np.array([(0.62, 0.20, 0.16), (0.82, 0.76, 0.64), (0.16, 0.24, 0.40),
+                        (0.70, 0.55, 0.25), (0.32, 0.42, 0.36), (0.78, 0.62, 0.58)])
+    rows = []
+    for _ in range(count):
+        row = []
+        for _ in range(count):
+            pair = colours[rng.choice(len(colours), 2, replace=False)]
+            patch = (np.ones((side, side, 3), np.float32) * pair[0] if rng.random() < 0.35
+                     else ornament(rng, side, side, list(pair), int(rng.integers(20, 50))))
+            patch[:3] = patch[:, :3] = 0.6 * pair[0]
+            row.append(patch)
+        rows.append(np.hstack(row))
+    return weave(rng, np.vstack(rows).astype(np.float32), 3, 0.06)
+
+
 def save(folder, name, image):
     """Colours are linear reflectances; the file is sRGB, as POV-Ray expects."""
     linear = np.clip(image, 0, 1)
@@ -259,23 +336,3 @@ def save(folder, name, image):
                        1.055 * linear ** (1 / 2.4) - 0.055)
     cv2.imwrite(os.path.join(folder, name),
                 np.rint(encoded[..., ::-1] * 255).astype(np.uint8))
-
-
-def write_all(folder):
-    jobs = (
-        ("rug.png", rug),
-        ("landscape.png", landscape),
-        ("print_a.png", lambda rng: botanical(rng, (0.25, 0.42, 0.18))),
-        ("print_b.png", lambda rng: botanical(rng, (0.55, 0.27, 0.12))),
-        ("spines.png", lambda rng: spines(rng, 40)),
-        ("magazine_a.png", lambda rng: magazine(
-            rng, [(0.60, 0.12, 0.10), (0.85, 0.75, 0.55), (0.15, 0.2, 0.3)])),
-        ("magazine_b.png", lambda rng: magazine(
-            rng, [(0.08, 0.20, 0.36), (0.75, 0.65, 0.30), (0.55, 0.70, 0.72)])),
-        ("chair.png", chair_fabric),
-        ("kilim.png", kilim),
-        ("leafy.png", leafy_cloth),
-        ("tweed.png", tweed),
-    )
-    for seed, (name, draw) in enumerate(jobs):
-        save(folder, name, draw(np.random.default_rng(1000 + seed)))

@@ -150,7 +150,8 @@ def quaternion(rotation):
     return np.array(q)
 
 
-def write(folder, photographs, poses, focal):
+def write(folder, photographs, names, poses, focal):
+    """names: of the photographs' files."""
     height, width = photographs[0].shape[:2]
     calibration = np.array(((focal, 0, width / 2), (0, focal, height / 2), (0, 0, 1)))
     matrices = [calibration @ np.column_stack(pose) for pose in poses]
@@ -209,9 +210,9 @@ def write(folder, photographs, poses, focal):
                 "# Number of images: %d, mean observations per image: %.2f\n"
                 % (len(poses), np.mean([len(o) for o in observations])))
         for view, (rotation, translation) in enumerate(poses):
-            f.write("%d %s %s 1 room_%02d.jpg\n" % (
+            f.write("%d %s %s 1 %s\n" % (
                 view + 1, " ".join("%.12f" % v for v in quaternion(rotation)),
-                " ".join("%.9f" % v for v in translation), view))
+                " ".join("%.9f" % v for v in translation), names[view]))
             f.write(" ".join("%.3f %.3f %d" % o for o in observations[view]) + "\n")
     with open(os.path.join(folder, "points3D.txt"), "w") as f:
         f.write("# 3D point list with one line of data per point:\n"

@@ -1,53 +1,15 @@
 // A furnished living room with what defeats stereo: plain walls, a flush door, a
 // plain cabinet, a plain table top, a floor with only a faint grain; and textured
 // things between them.
-//
-// Rendered by generate.py, which writes view.inc (the camera, and Pass):
-//   Pass = 0  colour, linear light
-//   Pass = 1  depth: every surface shows the planar z depth divided by DepthRange
-//
-// Metres; x to the right, y up, z away from the cameras (POV-Ray is left-handed).
 #version 3.7;
-#include "view.inc"
+#include "begin.inc"
+#include "furniture.inc"
 
-#declare Colour = (Pass = 0);
 #declare W = 2.5;    // walls at x = -W and x = W
 #declare D = 4.6;    // back wall at z = D
 #declare H = 2.6;    // ceiling
 
-// ---------------------------------------------------------------------------
-// Light and camera
-
-global_settings {
-  assumed_gamma 1.0
-  max_trace_level 6
 #if (Colour)
-  radiosity {
-    pretrace_start 0.08
-    pretrace_end PretraceEnd
-    count 240
-    nearest_count 14
-    error_bound 0.42
-    low_error_factor 0.6
-    recursion_limit 2
-    minimum_reuse 0.012
-    gray_threshold 0.15
-    brightness 1.0
-    always_sample off
-  }
-#end
-}
-
-camera {
-  perspective
-  location Eye
-  right Right * WidthOverFocal
-  up Up * HeightOverFocal
-  direction Forward
-}
-
-#if (Colour)
-  #default { finish { ambient 0 diffuse 0.85 } }
   // A wide window behind the cameras, to the right.
   light_source {
     <1.9, 1.55, -0.55> rgb <0.60, 0.63, 0.68> * 1.55
@@ -60,29 +22,6 @@ camera {
     area_light <0.6, 0, 0>, <0, 0, 0.6>, 6, 6 adaptive 1 circular
     fade_distance 2.0 fade_power 1.5
   }
-#else
-  #default { finish { ambient 0 diffuse 0 emission 1 } }
-#end
-
-// In the depth pass nothing has a texture of its own, so that all inherit the one of
-// the union around them.
-#macro Skin(T)
-  #if (Colour) texture { T } #end
-#end
-
-#macro Flat(C)
-  texture { pigment { rgb C } finish { diffuse 0.85 } }
-#end
-
-#macro Glossy(C, Amount)
-  texture {
-    pigment { rgb C }
-    finish { diffuse 0.8 specular Amount roughness 0.02 }
-  }
-#end
-
-#macro Picture(File)
-  pigment { image_map { png File interpolate 2 } }
 #end
 
 #declare T_BackWall = Flat(<0.80, 0.77, 0.70>)
@@ -91,10 +30,6 @@ camera {
 #declare T_Trim = Glossy(<0.82, 0.81, 0.78>, 0.10)
 #declare T_Door = Glossy(<0.74, 0.73, 0.70>, 0.06)
 #declare T_Cabinet = Glossy(<0.72, 0.70, 0.66>, 0.08)
-#declare T_Metal = texture {
-  pigment { rgb <0.55, 0.54, 0.52> }
-  finish { diffuse 0.4 specular 0.9 roughness 0.01 metallic reflection { 0.25 metallic } }
-}
 #declare T_Dark = Glossy(<0.06, 0.05, 0.05>, 0.2)
 #declare T_TableTop = texture {
   pigment { rgb <0.46, 0.33, 0.22> }
@@ -113,47 +48,12 @@ camera {
   pigment { P_Grain }
   finish { diffuse 0.85 specular 0.05 roughness 0.08 }
 }
-#declare T_Wood = texture {
-  pigment {
-    wood turbulence 0.06 octaves 5 scale <0.035, 0.035, 1> rotate <2, 3, 0>
-    color_map {
-      [0.00 rgb <0.36, 0.21, 0.11>]
-      [0.45 rgb <0.30, 0.165, 0.082>]
-      [0.75 rgb <0.22, 0.115, 0.056>]
-      [1.00 rgb <0.34, 0.19, 0.10>]
-    }
-  }
-  finish { diffuse 0.85 specular 0.15 roughness 0.03 }
-}
 #declare T_Tweed = texture {
   // Aslant, so that no face of a cushion is parallel to the projection.
   Picture("tweed.png") scale 0.8 rotate <38, 0, 0> rotate <0, 43, 0>
 }
 #declare T_Chair = texture {
   Picture("chair.png") scale 0.42 rotate <33, 0, 0> rotate <0, 40, 0>
-}
-#declare T_Leaf = texture {
-  pigment {
-    bozo turbulence 0.5 octaves 4 scale 0.012
-    color_map {
-      [0.2 rgb <0.045, 0.13, 0.035>]
-      [0.5 rgb <0.09, 0.24, 0.05>]
-      [0.8 rgb <0.22, 0.36, 0.09>]
-    }
-  }
-  finish { diffuse 0.8 specular 0.25 roughness 0.04 }
-}
-#declare T_Bark = texture {
-  pigment {
-    granite scale <0.05, 0.15, 0.05>
-    color_map { [0 rgb <0.10, 0.07, 0.04>] [1 rgb <0.45, 0.36, 0.25>] }
-  }
-}
-#declare T_Soil = texture {
-  pigment {
-    granite scale 0.06
-    color_map { [0 rgb 0.02] [0.6 rgb <0.12, 0.08, 0.05>] [1 rgb <0.3, 0.22, 0.15>] }
-  }
 }
 #declare T_Wicker = texture {
   pigment {
@@ -186,186 +86,6 @@ camera {
   }
   finish { diffuse 0.8 specular 0.7 roughness 0.01 reflection { 0.02, 0.12 fresnel on } }
 }
-
-// ---------------------------------------------------------------------------
-// Building blocks
-
-// A box with rounded edges: exact surfaces only (boxes, cylinders, spheres).
-#macro Round(P, Q, R)
-  #local A = P + R;
-  #local B = Q - R;
-  union {
-    box { <P.x, A.y, A.z>, <Q.x, B.y, B.z> }
-    box { <A.x, P.y, A.z>, <B.x, Q.y, B.z> }
-    box { <A.x, A.y, P.z>, <B.x, B.y, Q.z> }
-    #local I = 0;
-    #while (I < 4)
-      #local X = (mod(I, 2) = 0 ? A.x : B.x);
-      #local Y = (I < 2 ? A.y : B.y);
-      #local Z = (I < 2 ? A.z : B.z);
-      #local Yx = (mod(I, 2) = 0 ? A.y : B.y);
-      cylinder { <X, Y, A.z>, <X, Y, B.z>, R }
-      cylinder { <X, A.y, Z>, <X, B.y, Z>, R }
-      cylinder { <A.x, Yx, Z>, <B.x, Yx, Z>, R }
-      sphere { <X, Y, A.z>, R }
-      sphere { <X, Y, B.z>, R }
-      #local I = I + 1;
-    #end
-  }
-#end
-
-// A stuffed cushion of Size x Size, Thick in the middle, as a triangle mesh; its
-// pattern is projected along z.
-#macro Cushion(Size, Thick)
-  #local N = 28;
-  mesh2 {
-    #local Bulge = function(u, v) {
-      0.5 * Thick * pow(max(0, (1 - u * u * u * u) * (1 - v * v * v * v)), 0.42)
-      * (1 + 0.05 * sin(9 * u + 2) * sin(7 * v))
-    }
-    vertex_vectors {
-      2 * (N + 1) * (N + 1)
-      #local Side = -1;
-      #while (Side <= 1)
-        #local J = 0;
-        #while (J <= N)
-          #local I = 0;
-          #while (I <= N)
-            #local U = 2 * I / N - 1;
-            #local V = 2 * J / N - 1;
-            // Corners stick out, edges are drawn in.
-            #local Pull = 1 - 0.07 * (1 - U * U) * V * V - 0.07 * (1 - V * V) * U * U;
-            , <U * Pull * Size / 2, V * Pull * Size / 2, Side * Bulge(U, V)>
-            #local I = I + 1;
-          #end
-          #local J = J + 1;
-        #end
-        #local Side = Side + 2;
-      #end
-    }
-    face_indices {
-      4 * N * N
-      #local Base = 0;
-      #while (Base <= (N + 1) * (N + 1))
-        #local J = 0;
-        #while (J < N)
-          #local I = 0;
-          #while (I < N)
-            #local K = Base + J * (N + 1) + I;
-            , <K, K + 1, K + N + 1>, <K + 1, K + N + 2, K + N + 1>
-            #local I = I + 1;
-          #end
-          #local J = J + 1;
-        #end
-        #local Base = Base + (N + 1) * (N + 1);
-      #end
-    }
-  }
-#end
-
-// A framed picture hanging on a wall that faces -z; its centre at the origin.
-#macro Framed(File, Width, Height, Border, FrameTexture)
-  union {
-    box {
-      <0, 0, 0>, <1, 1, 1>
-      #if (Colour) texture { Picture(File) } #end
-      scale <Width, Height, 0.012> translate <-Width / 2, -Height / 2, -0.015>
-    }
-    difference {
-      box { <-Width / 2 - Border, -Height / 2 - Border, -0.03>,
-            <Width / 2 + Border, Height / 2 + Border, 0> }
-      box { <-Width / 2, -Height / 2, -1>, <Width / 2, Height / 2, 1> }
-      Skin(FrameTexture)
-    }
-  }
-#end
-
-#declare Books = seed(7);
-#declare NextBook = 0;
-
-// Fills a shelf from x = From to x = To with books that stand on y = 0, backs at z = 0.
-#macro ShelfOfBooks(From, To, Tallest)
-  #local X = From;
-  #while (X < To - 0.05)
-    #local Thick = 0.020 + 0.028 * rand(Books);
-    #local Tall = Tallest * (0.72 + 0.28 * rand(Books));
-    #local Deep = 0.03 * rand(Books);
-    #local Lean = (rand(Books) < 0.10 ? 4 + 3 * rand(Books) : 0);
-    box {
-      <0, 0, 0>, <Thick, Tall, 0.2>
-      #if (Colour)
-        texture {
-          Picture("spines.png")
-          scale <40 * Thick, Tall, 1> translate -x * mod(NextBook, 40) * Thick
-          finish { diffuse 0.85 specular 0.08 roughness 0.03 }
-        }
-      #end
-      rotate z * Lean
-      translate <X + Tall * sin(radians(Lean)), 0, Deep>
-    }
-    #declare NextBook = NextBook + 1;
-    #local X = X + Thick / cos(radians(Lean)) + Tall * sin(radians(Lean)) + 0.0015;
-    #if (rand(Books) < 0.07) #local X = X + 0.05; #end
-  #end
-#end
-
-// A leaf from the origin along +z, Length long, curling down.
-#macro Leaf(Length, Broad, Curl)
-  mesh {
-    #local N = 7;
-    #local I = 0;
-    #while (I < N)
-      #local T0 = I / N;
-      #local T1 = (I + 1) / N;
-      #local B0 = Broad * pow(sin(pi * pow(T0, 0.8)), 0.9);
-      #local B1 = Broad * pow(max(0, sin(pi * pow(T1, 0.8))), 0.9);
-      #local M0 = <0, -Curl * T0 * T0 * Length, T0 * Length>;
-      #local M1 = <0, -Curl * T1 * T1 * Length, T1 * Length>;
-      #local S = -1;
-      #while (S <= 1)
-        #local E0 = M0 + <S * B0, 0.35 * B0, 0>;
-        #local E1 = M1 + <S * B1, 0.35 * B1, 0>;
-        triangle { M0, E0, E1 }
-        triangle { M0, E1, M1 }
-        #local S = S + 2;
-      #end
-      #local I = I + 1;
-    #end
-    Skin(T_Leaf)
-  }
-#end
-
-// A plant of several stems; the soil at the origin.
-#macro Plant(Stems, Tall, Size, Leaves, Which)
-  #local R = seed(Which);
-  union {
-    #local S = 0;
-    #while (S < Stems)
-      #local Turn = 360 * (S + 0.6 * rand(R)) / Stems;
-      #local Reach = Size * (0.25 + 0.7 * rand(R));
-      #local Top = Tall * (0.65 + 0.35 * rand(R));
-      #local I = 0;
-      #local Last = <0, 0, 0>;
-      #while (I < Leaves)
-        #local T = (I + 1) / Leaves;
-        #local Here = vrotate(<0, Top * T, Reach * T * T>, y * Turn);
-        cylinder { Last, Here, 0.006 * (1.3 - T) Skin(T_Bark) }
-        #local Last = Here;
-        #if (T > 0.2)
-          object {
-            Leaf(Size * (0.42 + 0.25 * rand(R)), Size * (0.10 + 0.05 * rand(R)),
-                 0.15 + 0.6 * rand(R))
-            rotate x * (-40 + 50 * rand(R))
-            rotate y * (137.5 * I + 40 * rand(R))
-            translate Here
-          }
-        #end
-        #local I = I + 1;
-      #end
-      #local S = S + 1;
-    #end
-  }
-#end
 
 // ---------------------------------------------------------------------------
 // The room
@@ -637,19 +357,4 @@ camera {
   object { Plant(6, 1.05, 0.36, 10, 11) translate <1.02, 0.26, 4.22> }
 }
 
-#if (Colour)
-  object { Everything }
-#else
-  // (p - Eye) . Forward / DepthRange, as a plane equation.
-  #declare Fx = Forward.x / DepthRange;
-  #declare Fy = Forward.y / DepthRange;
-  #declare Fz = Forward.z / DepthRange;
-  #declare F0 = vdot(Eye, Forward) / DepthRange;
-  union {
-    object { Everything }
-    texture {
-      pigment { function { x * Fx + y * Fy + z * Fz - F0 } color_map { [0 rgb 0] [1 rgb 1] } }
-      finish { ambient 0 diffuse 0 emission 1 }
-    }
-  }
-#end
+#include "end.inc"
