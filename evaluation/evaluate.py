@@ -14,6 +14,9 @@ first look:
 
     scripts/evaluate examples/room --out build/evaluation
 
+A scene of examples/ that has no photographs, such as examples/office, is rendered
+first, into OUT/scenes, which takes some minutes and needs POV-Ray.
+
 Each method runs once per seed in OUT/SET/METHOD-SEED, where SET is the name of
 DATA. OUT/report.md has tables, figures and pictures, OUT/tables/ the same
 figures as CSV. A run that was stopped goes on where it was. A method that fails
@@ -40,7 +43,7 @@ import subprocess
 import sys
 
 from . import (cloud_scores, command_line, experiment, files, machine, pictures, plan, processes,
-               report, steps, stereo_run)
+               report, scenes, steps, stereo_run)
 from .experiment import Experiment
 from .processes import Failure
 
@@ -91,6 +94,8 @@ def _experiments(arguments):
         name = os.path.basename(data)
         if name in experiments:
             raise Failure(f"two data sets are called {name}; run them with an --out of their own")
+        is_there = _prepare(data, arguments)
+        data = scenes.rendered(data, os.path.abspath(arguments.out))
         experiments[name] = planned = Experiment(
             name=name, data=data, methods=arguments.methods, seeds=arguments.seeds,
             options=stereo_run.size_options(arguments.image_size) + arguments.options,
@@ -98,18 +103,41 @@ def _experiments(arguments):
             tolerances=sorted(arguments.tolerances),
             relative_tolerances=sorted(arguments.relative_tolerances),
             compare=arguments.compare, views=arguments.views)
-        experiment.check(planned)
-        if not arguments.views and arguments.num_views > 0:
+        if is_there:
+            experiment.check(planned)
+        if is_there and not arguments.views and arguments.num_views > 0:
             planned.views = pictures.choose_views(data, planned.every, arguments.num_views)
     return list(experiments.values())
 
 
-def _planned(page, only):
+def _prepare(data, arguments):
+    """Renders a folder of photographs that is a scene. Returns False if it is to be rendered,
+    but only the commands are asked for."""
+    if scenes.is_scene(data) and not arguments.report_only:
+        out = os.path.abspath(arguments.out)
+        if not arguments.dry_run:
+            scenes.render(data, out)
+        elif not os.path.isdir(scenes.rendered(data, out)):
+            print(processes.command_text(scenes.command(data, out)), flush=True)
+            return False
+    return True
+
+
+def _planned(page, arguments):
     """The sets of a plan that can be run here."""
     planned = []
     for name, one_set in page.sets.items():
-        if only and name not in only:
+        if arguments.only and name not in arguments.only:
             continue
+        if page.scenes[name]:
+            try:
+                if not _prepare(page.scenes[name], arguments):
+                    planned.append(one_set)
+                    continue
+            except Failure as error:
+                processes.say(f"SKIPPED: {name}: {error}")
+                continue
+            page.choose_views(name)
         if not os.path.isdir(one_set.data):
             processes.say(f"SKIPPED: {name}: there is no {one_set.data}")
             continue
@@ -152,12 +180,13 @@ def main(words=None):
     bin_dir = _programs(arguments)
     page = None
     if arguments.plan:
-        page = plan.Plan(arguments.plan, arguments.data, machine.ROOT)
+        page = plan.Plan(arguments.plan, arguments.data, machine.ROOT,
+                         os.path.abspath(arguments.out))
         for name in arguments.only or []:
             if name not in page.sets:
                 raise Failure(f"{arguments.plan} has no set {name}; there are "
                               + ", ".join(page.sets))
-        experiments = _planned(page, arguments.only)
+        experiments = _planned(page, arguments)
     else:
         experiments = _experiments(arguments)
     evaluator = (None if arguments.no_clouds

@@ -31,7 +31,8 @@ class Settings(schemas.Model):
     class Config:
         extra = "forbid"
 
-    # Has images/, sparse/ and gt_depth/ or scans/, in the format of examples/room.
+    # Has images/, sparse/ and gt_depth/ or scans/, in the format of examples/room; in a plan
+    # also a scene of examples/ that is rendered first.
     data: Text
     methods: List[Text] = ["plain", "tapa"]
     seeds: pydantic.conlist(Whole, min_items=1) = [0]
@@ -81,7 +82,8 @@ def command_text(experiment):
     """What to type for this on a command line; DATA is the data sets' folder."""
     inside = os.path.basename(os.path.normpath(experiment.data))
     # Sets with the same photographs must not share a folder of results.
-    words = ["scripts/evaluate", "examples/room" if inside == "room" else f"DATA/{inside}",
+    is_example = os.path.isfile(os.path.join(machine.ROOT, "examples", inside, "scene.pov"))
+    words = ["scripts/evaluate", f"{'examples' if is_example else 'DATA'}/{inside}",
              "--out", "OUT" if inside == experiment.name else f"OUT/{experiment.name}"]
     for key in ("methods", "seeds", "sources", "every", "tolerances", "relative_tolerances"):
         value = getattr(experiment, key)

@@ -6,7 +6,8 @@
     text = '''...'''
 
     [sets.NAME]                   # results in OUT/NAME/METHOD-SEED
-    data = "office_entrance"      # in the folder of data sets, or in the repository
+    data = "office_entrance"      # in the folder of data sets, or in the repository; a scene
+                                  # of examples/ is rendered first
     methods = ["plain", "tapa"]
     seeds = [0, 1, 2]             # and so on: see experiment.Settings
     num_views = 1                 # of pictures, where no views are named
@@ -27,7 +28,7 @@ from typing import Dict, List, Optional
 
 import pydantic
 
-from . import experiment, files, pictures, report, schemas
+from . import experiment, files, pictures, report, scenes, schemas
 from .experiment import Count, Experiment, Settings, Tolerances, Whole
 from .processes import Failure
 from .schemas import Text
@@ -98,21 +99,28 @@ class Page(schemas.Model):
 class Plan:
     """A plan, whose sets are Experiments by name."""
 
-    def __init__(self, path, data_folder, root):
-        """data_folder: of the data sets; root: the repository."""
+    def __init__(self, path, data_folder, root, out=""):
+        """data_folder: of the data sets; root: the repository; out: of results."""
         self._folder = os.path.dirname(os.path.abspath(path))
         self._page = schemas.check(_read(path), Page, path, "is no plan: {}")
         self.sets = {}
+        self.scenes = {}  # The folder of each set's scene, None for photographs that are there.
         for name, settings in self._page.sets.items():
             inside = os.path.join(data_folder or "", settings.data)
             if not (data_folder and os.path.isdir(inside)):
                 inside = os.path.join(root, settings.data)
             values = settings.dict(exclude={"num_views"}, exclude_unset=True)
-            planned = Experiment(**{**values, "name": name, "data": inside})
-            if not planned.views and os.path.isdir(planned.data):
-                planned.views = pictures.choose_views(planned.data, planned.every,
-                                                      settings.num_views)
-            self.sets[name] = planned
+            self.scenes[name] = inside if scenes.is_scene(inside) else None
+            self.sets[name] = Experiment(**{**values, "name": name,
+                                            "data": scenes.rendered(inside, out)})
+            self.choose_views(name)
+
+    def choose_views(self, name):
+        """Of a set, for pictures, unless the plan names them; once photographs are there."""
+        planned = self.sets[name]
+        if not planned.views and os.path.isdir(planned.data):
+            planned.views = pictures.choose_views(planned.data, planned.every,
+                                                  self._page.sets[name].num_views)
 
     def page_folder(self, out):
         """The plan's folder, or OUT as long as a set has no results at all."""

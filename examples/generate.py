@@ -20,7 +20,6 @@ import hashlib
 import os
 import shutil
 import signal
-import subprocess
 import sys
 import tempfile
 import time
@@ -48,13 +47,8 @@ def made_from(one, camera):
             if name.endswith((".py", ".pov", ".inc"))):
         with open(path, "rb") as file:
             digest.update(file.read())
-    version = subprocess.run(["povray", "--version"], capture_output=True, check=False,
-                             encoding="utf-8", errors="replace")
-    lines = [line for line in (version.stdout + version.stderr).splitlines()
-             if line.startswith("POV-Ray ")]
-    return "scene %s\nsize %dx%d\nsources sha256 %s\nrenderer %s\n" % (
-        one.name, camera.width, camera.height, digest.hexdigest(),
-        lines[0] if lines else "unknown")
+    return "scene %s\nsize %dx%d\nsources sha256 %s\n" % (
+        one.name, camera.width, camera.height, digest.hexdigest())
 
 
 def render(one, camera, views, jobs, work):
@@ -113,6 +107,8 @@ def generate(one, arguments):
                           "size; remove it or name another folder" % target)
         print("%s is there already" % target, file=sys.stderr, flush=True)
         return
+    if shutil.which("povray") is None:
+        raise Failure("POV-Ray is not installed (Debian: apt-get install povray)")
     views = list(range(len(one.poses)))
     if arguments.preview:
         views = [view for view in views if view in arguments.preview]
@@ -161,8 +157,6 @@ def main():
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(128 + signal.SIGTERM))
     arguments = parse()
     try:
-        if shutil.which("povray") is None:
-            raise Failure("POV-Ray is not installed (Debian: apt-get install povray)")
         for name in dict.fromkeys(arguments.scenes):
             generate(scene.load(name), arguments)
     except (Failure, OSError, RuntimeError) as error:

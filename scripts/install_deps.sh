@@ -19,6 +19,9 @@ packages=(
   # The engine, the tests and the benchmarks.
   libbenchmark-dev libboost-context-dev libgtest-dev libhwy-dev libopencv-contrib-dev libopencv-dev
 )
+# Comes along when something is installed, but is not missed: it renders scenes of
+# examples/ (their tests are skipped without it).
+optional=(povray)
 
 if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
   echo "WARNING: This is no Debian: see to it yourself that there is what" \
@@ -35,7 +38,7 @@ if [[ ${#missing[@]} -eq 0 ]]; then
   exit 0
 fi
 
-install=(apt-get install -y --no-install-recommends "${missing[@]}")
+install=(apt-get install -y --no-install-recommends "${missing[@]}" "${optional[@]}")
 if [[ $(id -u) -eq 0 ]]; then
   as_root=(env DEBIAN_FRONTEND=noninteractive)
 elif command -v sudo >/dev/null && { sudo -n true 2>/dev/null || [[ -t 0 ]]; }

@@ -13,7 +13,7 @@ def make_poses():
     poses = []
     for step in range(10):
         along = step / 9
-        eye = (0.85 - 1.55 * along + rng.normal(0, 0.06), 1.48 + rng.normal(0, 0.06),
+        eye = (0.85 - 1.55 * along + rng.normal(0, 0.03), 1.48 + rng.normal(0, 0.06),
                -1.05 + 0.9 * max(0.0, along - 0.45) + rng.normal(0, 0.05))
         target = (-0.05 + 0.25 * along + rng.normal(0, 0.06), 0.98 + rng.normal(0, 0.05), 3.0)
         poses.append(Pose(eye, target, rng.normal(0, 1.0)))

@@ -53,7 +53,7 @@ class Scene:
 def names():
     """Of all scenes."""
     return sorted(name for name in os.listdir(EXAMPLES)
-                  if os.path.isfile(os.path.join(EXAMPLES, name, "scene.py")))
+                  if os.path.isfile(os.path.join(EXAMPLES, name, "scene.pov")))
 
 
 def load(name):

@@ -540,7 +540,9 @@ class ExperimentTest(TestCase):
                   "relative_tolerances": [1 / 3]},
                  "scripts/evaluate DATA/x --out OUT --tolerances 0.1234567,5,1e-05 "
                  "--relative_tolerances 0.3333333333333333"),
-                ({"name": "y", "data": "/somewhere/y"}, "scripts/evaluate DATA/y --out OUT")):
+                ({"name": "y", "data": "/somewhere/y"}, "scripts/evaluate DATA/y --out OUT"),
+                ({"name": "office", "data": "/o/scenes/office"},
+                 "scripts/evaluate examples/office --out OUT")):
             self.assertEqual(experiment.command_text(Experiment(**settings)), text)
 
 

@@ -186,9 +186,8 @@ TEST(RoomFilesTest, AreAllThereAndSmall) {
         << name;
   }
   for (const char* name :
-       {"README.md", "room.pov", "generate.py", "textures.py",
-        "sparse_model.py", "sparse/cameras.txt", "sparse/images.txt",
-        "sparse/points3D.txt"}) {
+       {"README.md", "scene.pov", "scene.py", "../generate.py",
+        "sparse/cameras.txt", "sparse/images.txt", "sparse/points3D.txt"}) {
     EXPECT_TRUE(fs::is_regular_file(RoomDir() / name)) << name;
   }
   uintmax_t bytes = 0;
@@ -279,7 +278,7 @@ TEST_F(RoomTest, EveryPixelHasDepth) {
   }
 }
 
-// The room's planes are known from room.pov; y points down here.
+// The room's planes are known from scene.pov; y points down here.
 TEST_F(RoomTest, PlanesAreFlatAndWhereTheSceneHasThem) {
   struct Plane {
     const char* name;
