@@ -116,6 +116,11 @@ void CheckMapFile(const std::string& path, MapKind kind, int width,
   }
 }
 
+std::pair<int, int> ReadMapSize(const std::string& path, MapKind kind) {
+  const OpenMap map = Open(path, kind);
+  return {map.width, map.height};
+}
+
 Map<float> ReadDepthMap(const std::string& path) {
   OpenMap file = Open(path, MapKind::kDepth);
   Map<float> map(file.width, file.height);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "src/base/map.h"
@@ -24,6 +25,9 @@ enum class MapKind { kDepth, kNormal, kConsistencyGraph };
 // Throws Failure that names the file and what is wrong with it, unless it is a
 // valid one of this kind and size.
 void CheckMapFile(const std::string& path, MapKind kind, int width, int height);
+
+// Width and height of a valid file. Throws Failure as CheckMapFile does.
+std::pair<int, int> ReadMapSize(const std::string& path, MapKind kind);
 
 // Read a valid file of any size. Throw Failure as CheckMapFile does. Values are
 // returned as they stand in the file.

@@ -12,7 +12,7 @@ namespace tapa {
 
 // While one of these lives, what COLMAP checks with CHECK and LOG(FATAL) ends
 // the program with one line "ERROR: CONTEXT: ..." and exit status 1, in place
-// of a stack trace and an abort. Do not nest.
+// of a stack trace and an abort. Of several that are nested the innermost speaks.
 class FatalErrors : public google::LogSink {
  public:
   explicit FatalErrors(const std::string& context);

@@ -6,6 +6,7 @@
 #include <string>
 #include <type_traits>
 
+#include "src/colmap/fusion_options.h"
 #include "src/colmap/host_options.h"
 
 // This header is included by COLMAP's own sources.
@@ -64,6 +65,15 @@ void AddOptionRowsIf(bool is_tapa, Widget* widget, HostOptions* options) {
 template <typename Widget>
 void AddOptionRows(Widget* widget, HostOptions* options) {
   AddOptionRowsIf(false, widget, options);
+}
+
+// Adds a row per option of the fusion that weighs agreement.
+template <typename Widget>
+void AddFusionRows(Widget* widget, FusionOptions* options) {
+  VisitFusionOptions(options,
+                     [widget](const OptionEntry& entry, auto* option) {
+                       AddOptionRow(widget, entry, option);
+                     });
 }
 
 // Makes a COLMAP OptionsWidget with the options of TAPA, which are too many for

@@ -1,0 +1,54 @@
+#ifndef TAPA_SRC_COLMAP_FUSION_SOURCE_H_
+#define TAPA_SRC_COLMAP_FUSION_SOURCE_H_
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "mvs/fusion.h"
+#include "src/colmap/pass.h"
+#include "src/colmap/view_cache.h"
+#include "src/colmap/views.h"
+#include "src/colmap/workspace.h"
+#include "src/fusion/fuse.h"
+
+namespace tapa {
+
+// The views of a workspace that fusion.cfg lists and that have maps.
+class FusionSource {
+ public:
+  // Throws Failure, which names the file, if maps are damaged or not of the
+  // shape of their photograph, or if there are none.
+  FusionSource(const colmap::mvs::StereoFusionOptions& options,
+               const WorkspaceLocation& location, Pass pass);
+
+  // It reads maps when they are needed, from this object. What is wrong with
+  // them throws Failure there.
+  FusionProblem Problem();
+
+  // Index in the model and name of a view of the problem.
+  int ModelIndex(int view) const { return model_indices_[view]; }
+  const std::string& Name(int view) const { return views_[view].name; }
+
+ private:
+  // Returns whether the view has maps.
+  bool FindMaps(SceneView* view) const;
+  std::vector<std::vector<int>> Neighbors(
+      const colmap::mvs::Model& model) const;
+  SurfaceMap ReadSurface(int view) const;
+  // Removes the depth of pixels that the view's mask leaves out.
+  void ApplyMask(const SceneView& view, SurfaceMap* surface) const;
+
+  const colmap::mvs::StereoFusionOptions& options_;
+  const WorkspaceLocation location_;
+  const Pass pass_;
+  // At the size of their maps, or of max_image_size.
+  std::vector<SceneView> views_;
+  std::vector<int> model_indices_;
+  std::vector<std::vector<int>> neighbors_;
+  std::unique_ptr<ViewCache<SurfacePixel>> surfaces_;
+};
+
+}  // namespace tapa
+
+#endif  // TAPA_SRC_COLMAP_FUSION_SOURCE_H_
