@@ -6,6 +6,7 @@ OUT/SET/METHOD-SEED, which is a COLMAP workspace with these files beside it:
     record.json         options, versions, machines, times, memory (record.py)
     fused.ply           points, fused with TAPA's thresholds
     fused_default.ply   points, fused with COLMAP's own thresholds
+    fused_agreement.ply points, fused by the rule that weighs agreement
     depth_scores.json   scores of the depth maps (depth_scores.py)
     cloud_scores.json   scores of the points (cloud_scores.py)
     *.log               what the programs printed

@@ -63,9 +63,15 @@ ABLATION = ["colmap", "paper-weights", "paper-coarse", "paper-fine", "paper-refi
 TAPA_ABLATION = ["plain", *(name.replace("paper", "tapa") for name in ABLATION[1:])]
 
 
+# COLMAP's rule, which counts pixels, with its own thresholds; and the rule of this
+# program, which weighs agreement.
+FUSION_COLMAP = ["--StereoFusion.agreement", "0"]
+FUSION_AGREEMENT = ["--StereoFusion.agreement", "1"]
+
+
 def fusion_options(reprojection_error, normal_error=20):
-    """Options of stereo_fusion. Pixels and degrees."""
-    return ["--StereoFusion.max_reproj_error", number_text(reprojection_error),
+    """Options of stereo_fusion for COLMAP's rule. Pixels and degrees."""
+    return [*FUSION_COLMAP, "--StereoFusion.max_reproj_error", number_text(reprojection_error),
             "--StereoFusion.max_normal_error", number_text(normal_error)]
 
 

@@ -72,7 +72,7 @@ class SetReport:
         return self._table("cost", tables.cost_table(self.by_method, self._methods))
 
     def clouds(self):
-        """With the same thresholds for all methods, and with COLMAP's own."""
+        """With the same thresholds for all methods, with COLMAP's own, and weighed."""
         text = []
         others = results.evaluators(self._runs) - {"evaluate_point_cloud"}
         if others:

@@ -12,12 +12,13 @@ import glob
 import os
 
 from . import files, machine, processes, record
-from .methods import FUSION_HIGH, METHODS
+from .methods import FUSION_AGREEMENT, FUSION_COLMAP, FUSION_HIGH, METHODS
 from .processes import Failure
 from .steps import Step
 
 # Options of stereo_fusion by the name of the cloud, FOLDER/NAME.ply.
-FUSIONS = {"fused": FUSION_HIGH, "fused_default": []}
+FUSIONS = {"fused": FUSION_HIGH, "fused_default": FUSION_COLMAP,
+           "fused_agreement": FUSION_AGREEMENT}
 
 
 def folder_name(method, seed):

@@ -71,10 +71,11 @@ def depth_table(by_method, methods, tolerances, bound=None):
 
 def cloud_table(by_method, methods, tolerances, cloud="fused"):
     """Scores of points; tolerances in metres."""
-    thresholds = ("COLMAP's own thresholds" if cloud == "fused_default"
-                  else "TAPA's thresholds for all methods")
+    rule = {"fused_default": "with COLMAP's own thresholds",
+            "fused_agreement": "by weighing agreement"}.get(
+                cloud, "with TAPA's thresholds for all methods")
     return _score_table(
-        f"**Points, fused with {thresholds}.**", by_method, methods,
+        f"**Points, fused {rule}.**", by_method, methods,
         [(value, "m") for value in tolerances],
         lambda runs, value, _: results.cloud_score(runs, value, cloud))
 

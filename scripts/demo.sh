@@ -22,10 +22,6 @@ fail() {
   exit 1
 }
 
-# Half the default reprojection error and twice the normal error, as the paper.
-tapa_fusion=(--StereoFusion.max_reproj_error 1
-  --StereoFusion.max_normal_error 20)
-
 run() {
   echo "\$ ${*/#$root\//}" >&2
   "$@"
@@ -105,7 +101,7 @@ reconstruct_photos() {
   run "$bin/colmap" patch_match_stereo --workspace_path "$out/dense" \
     --PatchMatchStereo.allow_missing_files 1 --PatchMatchStereo.tapa 1
   run "$bin/colmap" stereo_fusion --workspace_path "$out/dense" \
-    --output_path "$out/dense/fused.ply" "${tapa_fusion[@]}"
+    --output_path "$out/dense/fused.ply"
   run "$here/evaluate_depth_maps" --workspace_path "$out/dense" \
     --pictures "$out/pictures"
   echo

@@ -64,7 +64,7 @@ def _run_of(arguments, scene, method, seed, size):
         data=_path(arguments, "sets", scene.set_name), set=scene.set_name, method=method,
         folder=_path(arguments, "runs", _size_name(size), scene.set_name,
                      stereo_run.folder_name(method, seed)),
-        seed=seed, fusions={"fused": scene.track.fusion, "fused_default": []},
+        seed=seed, fusions={**stereo_run.FUSIONS, "fused": scene.track.fusion},
         options=[*stereo_run.size_options(size),
                  *([] if method in ("plain", "colmap") else PLANE_OPTIONS),
                  *arguments.options],
@@ -237,7 +237,8 @@ def _parse(words):
     command.add_argument("--method", type=command_line.method, default="tapa",
                          help="%(default)s")
     command.add_argument("--cloud", choices=tuple(stereo_run.FUSIONS), default="fused",
-                         help="fused with TAPA's or with COLMAP's thresholds (%(default)s)")
+                         help="fused with TAPA's or with COLMAP's thresholds, or by weighing "
+                              "agreement (%(default)s)")
     command = add(miniature, "make a small scene of the built-in example, to try all of this")
     command.add_argument("dir", metavar="DIR", help="folder for everything")
     command.add_argument("--scene", default="miniature", help="its name (%(default)s)")

@@ -24,6 +24,7 @@ constexpr int kReach = 3;
 
 ViewEvidence::ViewEvidence(int width, int height)
     : agreement(width, height),
+      precision(width, height),
       depth_offset(width, height),
       normal(width, height),
       doubt(width, height),
@@ -45,9 +46,12 @@ void AskNeighbor(const ViewPair& pair, const SurfaceMap& view,
       const float w = opinion.agreement;
       if (w > 0) {
         evidence->agreement.At(row, col) += w;
-        evidence->depth_offset.At(row, col) += w * opinion.depth_offset;
+        const float precision = w * opinion.precision;
+        evidence->precision.At(row, col) += precision;
+        evidence->depth_offset.At(row, col) +=
+            precision * opinion.depth_offset;
         Vec3& n = evidence->normal.At(row, col);
-        n = n - (-w) * opinion.normal;
+        n = n - (-precision) * opinion.normal;
       }
       evidence->doubt.At(row, col) += opinion.doubts;
       if (w > kVisible) {

@@ -17,8 +17,10 @@ namespace tapa {
 struct ViewEvidence {
   ViewEvidence(int width, int height);
 
-  // Sums over the views that agree, with their agreement as weight.
+  // Sums over the views that agree, of their agreement; of agreement times
+  // precision; and with that as weight.
   Map<float> agreement;
+  Map<float> precision;
   Map<float> depth_offset;
   Map<Vec3> normal;
   // Number of views that see through the point.

@@ -171,7 +171,7 @@ class Fusion {
         continue;
       }
       // The pixel's own estimate counts as one view that agrees in full.
-      const float views = 1 + evidence.agreement.At(row, col);
+      const float views = 1 + evidence.precision.At(row, col);
       const float fused_depth =
           depth * (1 + evidence.depth_offset.At(row, col) / views);
       FusedPoint point;

@@ -11,8 +11,8 @@ namespace tapa {
 // for, and its unit, stands in VisitFusionOptions.
 struct FusionOptions {
   bool enabled = true;
-  double depth_error = 0.003;
-  double reproj_error = 0.7;
+  double depth_error = 0.002;
+  double reproj_error = 0.5;
   double normal_error = 20;
   double doubt = 2;
   double threshold = 0.2;

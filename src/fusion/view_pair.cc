@@ -136,6 +136,8 @@ Opinion ViewPair::Ask(int row, int col, float depth, const Vec3& normal,
                        squared_angle * limits_.normal_weight;
   opinion.agreement = std::exp(-0.5f * errors);
   opinion.depth_offset = offset;
+  const float detail = focal_ratio_ * depth / seen.z;
+  opinion.precision = detail * detail;
   return opinion;
 }
 

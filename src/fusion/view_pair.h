@@ -65,6 +65,9 @@ struct Opinion {
   // Where the surface of that view meets the pixel's ray: relative to the
   // pixel's depth, less 1. Set where there is agreement.
   float depth_offset = 0;
+  // How precise that view is, relative to the pixel's: 1 / variance of its depth
+  // there, which grows with the square of what a pixel covers.
+  float precision = 1;
   // Its normal in the frame of the pixel's view. Set where there is agreement.
   Vec3 normal;
   // It sees through the pixel's point.
@@ -83,6 +86,7 @@ class ViewPair {
         to_other_(view, other),
         from_other_(other, view),
         rotation_(Rotation(view, other)),
+        focal_ratio_(static_cast<float>(other.fx / view.fx)),
         limits_(limits) {}
 
   // The pixel of the other view that sees the point at a depth. Returns whether
@@ -130,6 +134,8 @@ class ViewPair {
   const PixelTransfer from_other_;
   // From the view's frame to the other's.
   const std::array<float, 9> rotation_;
+  // Focal length in pixels of the other view by that of the view.
+  const float focal_ratio_;
   const AgreementLimits limits_;
 };
 

@@ -184,16 +184,16 @@ class EvaluateTest(TestCase):
         result = self.room("--dry_run", "--no_clouds", "--methods", "tapa")
         self.assertEqual(result.returncode, 0, result.stderr)
         lines = result.stdout.splitlines()
-        self.assertEqual(len(lines), 5, result.stdout)
+        self.assertEqual(len(lines), 6, result.stdout)
         for line, word in zip(lines, ("make_workspace.sh", "patch_match_stereo",
-                                      "stereo_fusion", "stereo_fusion",
+                                      "stereo_fusion", "stereo_fusion", "stereo_fusion",
                                       "evaluate_depth_maps")):
             self.assertIn(word, line)
         self.assertFalse(os.path.exists(self.path("out")))
         # Without programs, too, and with no wish to build them.
         result = self.room("--dry_run", "--methods", "tapa", bin_dir=self.path("no"))
         self.assertEqual(result.returncode, 0, result.stderr)
-        self.assertEqual(len(result.stdout.splitlines()), 8, result.stdout)
+        self.assertEqual(len(result.stdout.splitlines()), 10, result.stdout)
 
     def test_a_page_from_a_plan(self):
         path = self.write("plan.toml", f"""

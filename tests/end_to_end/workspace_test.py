@@ -45,8 +45,7 @@ class Colmap(tiny.TestCase):
         self.assert_success(tiny.run_stereo(self.folder, **GOOD))
         result = tiny.run([tiny.COLMAP, "stereo_fusion", "--workspace_path",
                            self.folder, "--output_path",
-                           self.path("fused.ply"),
-                           "--StereoFusion.min_num_pixels", "3"])
+                           self.path("fused.ply")])
         self.assert_success(result)
         self.assertGreater(os.path.getsize(self.path("fused.ply")), 20000)
 
@@ -58,7 +57,8 @@ class Colmap(tiny.TestCase):
         self.assert_success(tiny.run([
             tiny.COLMAP, "stereo_fusion", "--workspace_path", self.folder,
             "--output_path", self.path("fused.ply"),
-            "--StereoFusion.min_num_pixels", "1"]))
+            "--StereoFusion.agreement", "0", "--StereoFusion.min_num_pixels",
+            "1"]))
         points = tiny.read_points(self.path("fused.ply"))
         self.assertEqual(len(points), 32 * 21)
         photo = tiny.render(0, tiny.WIDTH, tiny.HEIGHT)

@@ -72,11 +72,11 @@ class StereoRunTest(TestCase):
     def test_everything_is_done_once_and_recorded(self):
         run = self.run_
         self.assertFalse(run.is_complete())
-        self.assertEqual(sum(len(step.commands()) for step in run.steps()), 4)
+        self.assertEqual(sum(len(step.commands()) for step in run.steps()), 5)
         self.assertFalse(os.path.exists(run.folder))
         content = complete(run)
         self.assertTrue(run.is_complete())
-        self.assertEqual(content.done, ["stereo", "fused", "fused_default"])
+        self.assertEqual(content.done, ["stereo", *stereo_run.FUSIONS])
         self.assertEqual(content.options, ["--PatchMatchStereo.seed", "3",
                                            "--PatchMatchStereo.tapa", "1",
                                            "--PatchMatchStereo.num_iterations", "1"])
@@ -101,11 +101,11 @@ class StereoRunTest(TestCase):
         # Again: nothing is left to do.
         complete(run)
         self.assertEqual(len(self.calls("patch_match_stereo")), 1)
-        self.assertEqual(len(self.calls("stereo_fusion")), 2)
+        self.assertEqual(len(self.calls("stereo_fusion")), 3)
         # A cloud that is gone is made anew.
         os.remove(run.path("fused.ply"))
         self.assertEqual(complete(run).done, content.done)
-        self.assertEqual(len(self.calls("stereo_fusion")), 3)
+        self.assertEqual(len(self.calls("stereo_fusion")), 4)
 
     def test_a_failure_is_recorded_and_forgotten_when_it_is_over(self):
         self.write("bin/fail")
@@ -138,9 +138,9 @@ class StereoRunTest(TestCase):
                 Failure, "fused.ply was made with the fusion options "
                 ".*max_reproj_error 1 .*, not .*max_reproj_error 3; remove it"):
             complete(other)
-        self.assertEqual(len(self.calls("stereo_fusion")), 2)
+        self.assertEqual(len(self.calls("stereo_fusion")), 3)
         os.remove(other.path("fused.ply"))
-        self.assertEqual(complete(other).fusion_options, {**other.fusions, "fused_default": []})
+        self.assertEqual(complete(other).fusion_options, {**stereo_run.FUSIONS, **other.fusions})
 
     def test_times_of_a_finished_workspace_are_unknown(self):
         complete(self.run_)
@@ -152,7 +152,8 @@ class StereoRunTest(TestCase):
                       # This program looked whether all maps were there.
                       content.made_with["stereo"][0]):
             self.assertIsNone(value)
-        self.assertEqual(content.fusion_options, {"fused": None, "fused_default": []})
+        self.assertEqual(content.fusion_options, {**stereo_run.FUSIONS, "fused": None,
+                                                  "fused_agreement": None})
         self.assertEqual(content.made_with["fused"], [None])
         self.assertTrue(content.is_mixed())
         self.assertGreater(content.seconds["fused_default"], 0)
