@@ -75,11 +75,11 @@ bool FuseAndReport(const colmap::mvs::StereoFusionOptions& options,
     ++num_views;
     num_points += view.points.size();
     const double to_go = done > 0 ? SecondsSince(begin) * (1 / done - 1) : 0;
-    std::printf("Fused %zu/%zu %s in %.1f s: %zu points, %zu in all; %.0f s to "
-                "go\n",
-                num_views, problem.views.size(),
-                source->Name(view.view).c_str(), SecondsSince(view_begin),
-                view.points.size(), num_points, to_go);
+    std::printf(
+        "Fused %zu/%zu %s in %.1f s: %zu points, %zu in all; %.0f s to "
+        "go\n",
+        num_views, problem.views.size(), source->Name(view.view).c_str(),
+        SecondsSince(view_begin), view.points.size(), num_points, to_go);
     std::fflush(stdout);
     view_begin = Clock::now();
   };
@@ -269,8 +269,8 @@ void WriteFusedCloud(const std::string& path,
     WriteFile(path, PlyHeader(points.size(), /* with_confidence */ false),
               [&](BinaryWriter* writer) {
                 for (const auto& p : points) {
-                  AddPoint({p.x, p.y, p.z}, {p.nx, p.ny, p.nz},
-                           {p.r, p.g, p.b}, writer);
+                  AddPoint({p.x, p.y, p.z}, {p.nx, p.ny, p.nz}, {p.r, p.g, p.b},
+                           writer);
                 }
               });
   });

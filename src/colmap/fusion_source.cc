@@ -121,11 +121,11 @@ bool FusionSource::FindMaps(SceneView* view) const {
 
 std::vector<std::vector<int>> FusionSource::Neighbors(
     const colmap::mvs::Model& model) const {
-  const auto overlapping = model.GetMaxOverlappingImagesFromPMVS().empty()
-                               ? model.GetMaxOverlappingImages(
-                                     model.images.size(),
-                                     /* min_triangulation_angle */ 0)
-                               : model.GetMaxOverlappingImagesFromPMVS();
+  const auto overlapping =
+      model.GetMaxOverlappingImagesFromPMVS().empty()
+          ? model.GetMaxOverlappingImages(model.images.size(),
+                                          /* min_triangulation_angle */ 0)
+          : model.GetMaxOverlappingImagesFromPMVS();
   std::vector<int> positions(model.images.size(), -1);
   for (size_t i = 0; i < model_indices_.size(); ++i) {
     positions[model_indices_[i]] = static_cast<int>(i);
@@ -167,8 +167,8 @@ FusionProblem FusionSource::Problem() {
 
 SurfaceMap FusionSource::ReadSurface(int index) const {
   const SceneView& view = views_[index];
-  const Map<float> depth = ReadDepthMap(
-      location_.MapPath(MapKind::kDepth, view.name, pass_, 0));
+  const Map<float> depth =
+      ReadDepthMap(location_.MapPath(MapKind::kDepth, view.name, pass_, 0));
   const std::string normal_path =
       location_.MapPath(MapKind::kNormal, view.name, pass_, 0);
   CheckMapFile(normal_path, MapKind::kNormal, depth.width(), depth.height());

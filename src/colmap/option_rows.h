@@ -70,10 +70,9 @@ void AddOptionRows(Widget* widget, HostOptions* options) {
 // Adds a row per option of the fusion that weighs agreement.
 template <typename Widget>
 void AddFusionRows(Widget* widget, FusionOptions* options) {
-  VisitFusionOptions(options,
-                     [widget](const OptionEntry& entry, auto* option) {
-                       AddOptionRow(widget, entry, option);
-                     });
+  VisitFusionOptions(options, [widget](const OptionEntry& entry, auto* option) {
+    AddOptionRow(widget, entry, option);
+  });
 }
 
 // Makes a COLMAP OptionsWidget with the options of TAPA, which are too many for

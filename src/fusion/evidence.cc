@@ -48,8 +48,7 @@ void AskNeighbor(const ViewPair& pair, const SurfaceMap& view,
         evidence->agreement.At(row, col) += w;
         const float precision = w * opinion.precision;
         evidence->precision.At(row, col) += precision;
-        evidence->depth_offset.At(row, col) +=
-            precision * opinion.depth_offset;
+        evidence->depth_offset.At(row, col) += precision * opinion.depth_offset;
         Vec3& n = evidence->normal.At(row, col);
         n = n - (-precision) * opinion.normal;
       }
@@ -110,8 +109,7 @@ void SpreadEvidence(const Camera& camera, const SurfaceMap& view, int radius,
           if (IsDepth(d) &&
               std::abs(d * Dot(normal, rays.Ray(c, r)) - plane) <
                   kPlaneDistance * depth &&
-              Dot(normal, UnpackNormal(view.At(r, c).normal)) >
-                  kNormalCosine) {
+              Dot(normal, UnpackNormal(view.At(r, c).normal)) > kNormalCosine) {
             sum += weight.At(r, c);
             ++count;
           }

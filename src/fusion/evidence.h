@@ -40,10 +40,10 @@ void AskNeighbor(const ViewPair& pair, const SurfaceMap& view,
 void WeighEvidence(const ViewEvidence& evidence, double doubt, int begin,
                    int end, Map<float>* weight);
 
-// To the weight of each pixel in the rows [begin, end) adds the mean over pixels
-// around it that lie on the same surface: in its tangential plane, with similar
-// normals. radius: how far they are looked for, in pixels, in 7 x 7 places. A
-// flat wall that is confirmed in part is confirmed as a whole.
+// To the weight of each pixel in the rows [begin, end) adds the mean over
+// pixels around it that lie on the same surface: in its tangential plane, with
+// similar normals. radius: how far they are looked for, in pixels, in 7 x 7
+// places. A flat wall that is confirmed in part is confirmed as a whole.
 void SpreadEvidence(const Camera& camera, const SurfaceMap& view, int radius,
                     const Map<float>& weight, int begin, int end,
                     Map<float>* spread);

@@ -82,9 +82,7 @@ class Fusion {
     const double work = share * view.width * view.height;
     const bool is_done = team_.For(
         view.height, kRowsPerBlock,
-        [&](int, int begin, int end, const ContinueCheck&) {
-          run(begin, end);
-        },
+        [&](int, int begin, int end, const ContinueCheck&) { run(begin, end); },
         [&](double done) {
           return !control_.progress ||
                  control_.progress((done_work_ + done * work) / total_work_);

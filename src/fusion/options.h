@@ -3,7 +3,8 @@
 
 #include "src/mvs/option_entry.h"
 
-// COLMAP's own sources include this header, through src/colmap/fusion_options.h.
+// COLMAP's own sources include this header, through
+// src/colmap/fusion_options.h.
 
 namespace tapa {
 

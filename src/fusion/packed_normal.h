@@ -9,10 +9,10 @@
 
 namespace tapa {
 
-// A direction in 32 bits: its point on the octahedron |x| + |y| + |z| = 1, whose
-// lower half is folded outwards, with 16 bits for each of x and y. The error is
-// at most 7e-5 radians. (Cigolle et al., "A Survey of Efficient Representations
-// for Independent Unit Vectors", JCGT 2014.)
+// A direction in 32 bits: its point on the octahedron |x| + |y| + |z| = 1,
+// whose lower half is folded outwards, with 16 bits for each of x and y. The
+// error is at most 7e-5 radians. (Cigolle et al., "A Survey of Efficient
+// Representations for Independent Unit Vectors", JCGT 2014.)
 
 // normal: of any length but 0; what has none becomes (0, 0, 1).
 inline uint32_t PackNormal(const Vec3& normal) {

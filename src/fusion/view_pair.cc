@@ -12,8 +12,8 @@ Matrix Multiply(const Matrix& a, const Matrix& b) {
   Matrix product;
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
-      product[3 * i + j] = a[3 * i] * b[j] + a[3 * i + 1] * b[3 + j] +
-                           a[3 * i + 2] * b[6 + j];
+      product[3 * i + j] =
+          a[3 * i] * b[j] + a[3 * i + 1] * b[3 + j] + a[3 * i + 2] * b[6 + j];
     }
   }
   return product;
@@ -47,12 +47,13 @@ PixelTransfer::PixelTransfer(const Camera& from, const Camera& to) {
   const Matrix rotation = RelativeRotation(from, to);
   const Vector turned = Multiply(rotation, from.t);
   const Matrix K = {to.fx, 0, to.cx - 0.5, 0, to.fy, to.cy - 0.5, 0, 0, 1};
-  const Matrix inverse_K = {1 / from.fx, 0, -(from.cx - 0.5) / from.fx,
-                            0, 1 / from.fy, -(from.cy - 0.5) / from.fy,
-                            0, 0, 1};
+  const Matrix inverse_K = {
+      1 / from.fx, 0,           -(from.cx - 0.5) / from.fx,
+      0,           1 / from.fy, -(from.cy - 0.5) / from.fy,
+      0,           0,           1};
   const Matrix a = Multiply(K, Multiply(rotation, inverse_K));
-  const Vector c = Multiply(K, Vector{to.t[0] - turned[0], to.t[1] - turned[1],
-                                      to.t[2] - turned[2]});
+  const Vector c = Multiply(
+      K, Vector{to.t[0] - turned[0], to.t[1] - turned[1], to.t[2] - turned[2]});
   std::copy(a.begin(), a.end(), A.begin());
   std::copy(c.begin(), c.end(), b.begin());
 }
@@ -83,8 +84,8 @@ Opinion ViewPair::Ask(int row, int col, float depth, const Vec3& normal,
   Opinion opinion;
   int other_row, other_col;
   Vec3 seen;
-  if (!Find(row, col, depth, other.width(), other.height(),
-            &other_row, &other_col, &seen)) {
+  if (!Find(row, col, depth, other.width(), other.height(), &other_row,
+            &other_col, &seen)) {
     return opinion;
   }
   const float other_depth = other.At(other_row, other_col).depth;
@@ -93,9 +94,9 @@ Opinion ViewPair::Ask(int row, int col, float depth, const Vec3& normal,
     return opinion;
   }
 
-  // The other surface as a plane, met by the ray to the point and by the pixel's.
-  const Vec3 other_normal =
-      UnpackNormal(other.At(other_row, other_col).normal);
+  // The other surface as a plane, met by the ray to the point and by the
+  // pixel's.
+  const Vec3 other_normal = UnpackNormal(other.At(other_row, other_col).normal);
   const Vec3 other_ray = other_camera_.Ray(other_col, other_row);
   const Vec3 ray = other_camera_.Ray(seen.x, seen.y);
   const float distance = Dot(other_normal, other_ray);

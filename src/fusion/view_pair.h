@@ -53,8 +53,8 @@ struct AgreementLimits {
   float max_depth_error;
   // Relative depth and pixels, squared, from which a view sees through.
   float doubt_depth, doubt_squared_reproj;
-  // Relative depth and pixels, squared, up to which it is the same point that is
-  // seen, if with errors.
+  // Relative depth and pixels, squared, up to which it is the same point that
+  // is seen, if with errors.
   float same_depth, same_squared_reproj;
 };
 
@@ -65,8 +65,8 @@ struct Opinion {
   // Where the surface of that view meets the pixel's ray: relative to the
   // pixel's depth, less 1. Set where there is agreement.
   float depth_offset = 0;
-  // How precise that view is, relative to the pixel's: 1 / variance of its depth
-  // there, which grows with the square of what a pixel covers.
+  // How precise that view is, relative to the pixel's: 1 / variance of its
+  // depth there, which grows with the square of what a pixel covers.
   float precision = 1;
   // Its normal in the frame of the pixel's view. Set where there is agreement.
   Vec3 normal;
@@ -91,8 +91,8 @@ class ViewPair {
 
   // The pixel of the other view that sees the point at a depth. Returns whether
   // there is one. seen: (x, y, depth) there.
-  bool Find(int row, int col, float depth, int width, int height, int* other_row,
-            int* other_col, Vec3* seen) const {
+  bool Find(int row, int col, float depth, int width, int height,
+            int* other_row, int* other_col, Vec3* seen) const {
     const Vec3 p = to_other_.Apply(col, row, depth);
     if (!(p.z > 0)) {
       return false;

@@ -88,8 +88,7 @@ TEST(FuseTest, AViewThatSeesThroughSpeaksAgainst) {
   const ScenePlane patch{{0, 0, -1}, -3};
   const auto add_patch = [&](Scene* to) {
     for (int view = 0; view < 2; ++view) {
-      const SurfaceMap near =
-          SeePlane(patch, to->views[view].camera, 64, 48);
+      const SurfaceMap near = SeePlane(patch, to->views[view].camera, 64, 48);
       for (int row = 16; row < 32; ++row) {
         for (int col = 20; col < 60; ++col) {
           to->surfaces[view]->At(row, col) = near.At(row, col);

@@ -25,8 +25,8 @@ SurfaceMap SeePlane(const ScenePlane& plane, const Camera& camera, int width,
   const double ny = R[3] * n.x + R[4] * n.y + R[5] * n.z;
   const double nz = R[6] * n.x + R[7] * n.y + R[8] * n.z;
   // n X = d with X = R^T (x - t).
-  const double d = plane.distance + nx * camera.t[0] + ny * camera.t[1] +
-                   nz * camera.t[2];
+  const double d =
+      plane.distance + nx * camera.t[0] + ny * camera.t[1] + nz * camera.t[2];
   SurfaceMap map(width, height);
   for (int row = 0; row < height; ++row) {
     for (int col = 0; col < width; ++col) {

@@ -89,8 +89,8 @@ NaiveOpinion AskNaively(const FusionOptions& options, const Camera& a,
   opinion.is_same = std::abs(offset) < 6 * options.depth_error &&
                     reproj < 4 * options.reproj_error;
   if (opinion.is_same && std::abs(offset) < 3 * options.depth_error) {
-    const Vector3d n_a = RotationOf(a).transpose() *
-                         ToVector(UnpackNormal(pixel.normal));
+    const Vector3d n_a =
+        RotationOf(a).transpose() * ToVector(UnpackNormal(pixel.normal));
     const double angle = (n_a - n_world).norm();
     opinion.agreement =
         std::exp(-0.5 * (std::pow(offset / options.depth_error, 2) +
