@@ -19,6 +19,10 @@ TAPA_INLINE Vec3 operator*(float s, const Vec3& a) {
   return {s * a.x, s * a.y, s * a.z};
 }
 
+TAPA_INLINE Vec3 operator+(const Vec3& a, const Vec3& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+
 TAPA_INLINE Vec3 operator-(const Vec3& a, const Vec3& b) {
   return {a.x - b.x, a.y - b.y, a.z - b.z};
 }

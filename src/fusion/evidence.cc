@@ -50,7 +50,7 @@ void AskNeighbor(const ViewPair& pair, const SurfaceMap& view,
         evidence->precision.At(row, col) += precision;
         evidence->depth_offset.At(row, col) += precision * opinion.depth_offset;
         Vec3& n = evidence->normal.At(row, col);
-        n = n - (-precision) * opinion.normal;
+        n = n + precision * opinion.normal;
       }
       evidence->doubt.At(row, col) += opinion.doubts;
       if (w > kVisible) {

@@ -179,7 +179,7 @@ class Fusion {
         continue;
       }
       const Vec3 own_normal = UnpackNormal(surface.At(row, col).normal);
-      const Vec3 normal = own_normal - -evidence.normal.At(row, col);
+      const Vec3 normal = own_normal + evidence.normal.At(row, col);
       point.normal = PackNormal(TurnToWorld(view.camera, normal));
       point.color = colors.At(row, col);
       point.confidence = weight.At(row, col);
