@@ -190,6 +190,7 @@ int FuseWorkspace(const colmap::mvs::StereoFusionOptions& options,
   const Interrupt interrupt;
   const auto stopped = [&] { return interrupt.Signal() != 0 || is_stopped(); };
   try {
+    CheckFusionOptions(options.agreement);
     FusionSource source(
         options, Location(workspace_path, workspace_format, pmvs_option_name),
         input_type == "photometric" ? Pass::kPhotometric : Pass::kGeometric);
