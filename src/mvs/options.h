@@ -157,7 +157,7 @@ void VisitSearchOptions(Options* options, const Visitor& visit) {
   visit(OptionEntry{"measure_all",
                     "Measure what a sweep chooses in all source views; "
                     "otherwise those that were not drawn keep what they saw "
-                    "when they last were"},
+                    "when they last were, but where a view starts at random"},
         &options->measure_all);
   visit(OptionEntry{"hysteresis",
                     "By how much (of 1 - NCC) another hypothesis must be "

@@ -14,7 +14,8 @@ Schedule::Schedule(const Options& options, int num_sources, bool has_start)
   common_.seed = options.seed;
   common_.num_samples = options.num_samples;
   common_.try_all = options.search.try_all;
-  common_.measure_all = options.search.measure_all;
+  // From random estimates little is known of which views see a pixel.
+  common_.measure_all = options.search.measure_all || !has_start;
   if (has_start) {
     common_.hysteresis = static_cast<float>(options.search.hysteresis);
   }
