@@ -21,8 +21,9 @@ namespace tapa {
 // asks for.
 enum class MapKind { kDepth, kNormal, kConsistencyGraph };
 
-// Throws Failure that names the file and what is wrong with it, unless it is a
-// valid one of this kind and size.
+// Throw Failure that names the file and what is wrong with it, unless it is a
+// valid one of this kind, and of this size.
+void CheckMapFile(const std::string& path, MapKind kind);
 void CheckMapFile(const std::string& path, MapKind kind, int width, int height);
 
 // Read a valid file of any size. Throw Failure as CheckMapFile does. Values are

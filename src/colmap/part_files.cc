@@ -1,0 +1,60 @@
+#include "src/colmap/part_files.h"
+
+#include <filesystem>
+#include <system_error>
+
+#include "src/base/failure.h"
+#include "src/colmap/fatal_errors.h"
+#include "util/misc.h"
+
+namespace tapa {
+namespace {
+
+std::string PartPath(const std::string& path) { return path + ".part"; }
+
+}  // namespace
+
+std::string MakePart(const std::string& path) {
+  std::error_code error;
+  std::filesystem::remove_all(PartPath(path), error);
+  std::filesystem::create_directories(PartPath(path), error);
+  if (error) {
+    throw Failure("The folder " + PartPath(path) +
+                  " cannot be made: " + error.message());
+  }
+  return PartPath(path);
+}
+
+void CommitPart(const std::string& path) {
+  std::error_code error;
+  std::filesystem::remove_all(path, error);
+  std::filesystem::rename(PartPath(path), path, error);
+  if (error) {
+    throw Failure(PartPath(path) + " cannot be renamed to " + path + ": " +
+                  error.message());
+  }
+}
+
+bool WriteWhole(const std::string& path,
+                const std::function<bool(const std::string&)>& write) {
+  std::error_code error;
+  std::filesystem::remove(PartPath(path), error);
+  if (write(PartPath(path))) {
+    std::filesystem::rename(PartPath(path), path, error);
+    if (!error) {
+      return true;
+    }
+  }
+  PrintError(path + " could not be made");
+  return false;
+}
+
+bool IsWholeWorkspace(const std::string& path) {
+  // After photographs and model the undistorter writes these.
+  const auto has = [&path](const char* name) {
+    return colmap::ExistsFile(colmap::JoinPaths(path, "stereo", name));
+  };
+  return has("patch-match.cfg") && has("fusion.cfg");
+}
+
+}  // namespace tapa
