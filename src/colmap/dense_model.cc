@@ -12,16 +12,14 @@ namespace {
 
 // How far distortion moves the corners of a photograph, in pixels.
 double Distortion(const colmap::Camera& camera) {
+  const Eigen::Matrix3d calibration = camera.CalibrationMatrix();
   double largest = 0;
   for (const double x : {0.0, 1.0}) {
     for (const double y : {0.0, 1.0}) {
       const Eigen::Vector2d corner(x * static_cast<double>(camera.Width()),
                                    y * static_cast<double>(camera.Height()));
-      const Eigen::Vector2d focal(camera.FocalLengthX(), camera.FocalLengthY());
-      const Eigen::Vector2d center(camera.PrincipalPointX(),
-                                   camera.PrincipalPointY());
       const Eigen::Vector2d pinhole =
-          camera.ImageToWorld(corner).cwiseProduct(focal) + center;
+          (calibration * camera.ImageToWorld(corner).homogeneous()).head<2>();
       const double distance = (pinhole - corner).norm();
       largest =
           std::isfinite(distance) ? std::max(largest, distance) : HUGE_VAL;

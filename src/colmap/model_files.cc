@@ -215,6 +215,7 @@ void ReadLines(const std::string& path, const Read& read) {
   TextLines lines(path);
   std::string line;
   while (lines.Next(&line)) {
+    const int number = lines.Number();
     const size_t begin = line.find_first_not_of(kBlanks);
     if (begin == std::string::npos || line[begin] == '#') {
       continue;
@@ -222,7 +223,7 @@ void ReadLines(const std::string& path, const Read& read) {
     try {
       read(line, &lines);
     } catch (const Failure& error) {
-      throw Failure(path + ", line " + std::to_string(lines.Number()) + ": " +
+      throw Failure(path + ", line " + std::to_string(number) + ": " +
                     error.what());
     }
   }
@@ -261,9 +262,8 @@ Observations ParseObservations(const std::string& line,
           static_cast<point3D_t>(fields.Read<int64_t>(kWhat)));
     }
   } catch (const Failure& error) {
-    throw Failure(std::string(error.what()) +
-                  "; the line after an image lists its points, here those of " +
-                  image_name + ", and is empty if there are none");
+    throw Failure("the next line, which lists the points of " + image_name +
+                  " and is empty if there are none: " + error.what());
   }
   return observations;
 }

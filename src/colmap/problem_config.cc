@@ -64,6 +64,12 @@ std::vector<std::string> SplitList(const std::string& line,
   return items;
 }
 
+// Names may begin with #, too.
+bool IsComment(const std::string& line, const IsName& is_name) {
+  return Trim(line)[0] == '#' && !is_name(line) &&
+         !is_name(SplitList(line, is_name)[0]);
+}
+
 // Returns 0 if the text is not a number from 1 on.
 int ParseCount(const std::string& text) {
   if (text.empty() || text.size() > 9 ||
@@ -152,9 +158,14 @@ std::vector<ViewConfig> ReadProblemConfig(const std::string& path,
   }
   std::vector<ViewConfig> config;
   std::string reference;
-  for (const std::string& line : ReadImageNames(path, is_name)) {
+  std::string line;
+  for (TextLines lines(path); lines.Next(&line);) {
+    const std::string trimmed = Trim(line);
+    if (trimmed.empty() || IsComment(line, is_name)) {
+      continue;
+    }
     if (reference.empty()) {
-      reference = line;
+      reference = is_name(line) ? line : trimmed;
     } else {
       config.push_back(ParseView(path, reference, line, is_name));
       reference.clear();
