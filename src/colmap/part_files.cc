@@ -37,10 +37,14 @@ void CommitPart(const std::string& path) {
 
 bool WriteWhole(const std::string& path,
                 const std::function<bool(const std::string&)>& write) {
+  // Meshing adds the extension where it is missing.
+  const std::filesystem::path final_path = path;
+  std::filesystem::path part_path = path;
+  part_path.replace_extension(PartPath("") + final_path.extension().string());
   std::error_code error;
-  std::filesystem::remove(PartPath(path), error);
-  if (write(PartPath(path))) {
-    std::filesystem::rename(PartPath(path), path, error);
+  std::filesystem::remove(part_path, error);
+  if (write(part_path.string())) {
+    std::filesystem::rename(part_path, final_path, error);
     if (!error) {
       return true;
     }

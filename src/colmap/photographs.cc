@@ -10,6 +10,7 @@
 #include "src/base/atomic_file.h"
 #include "src/base/failure.h"
 #include "src/colmap/fatal_errors.h"
+#include "src/colmap/progress.h"
 #include "src/colmap/text_files.h"
 #include "src/colmap/views_record.h"
 #include "util/misc.h"
@@ -83,15 +84,22 @@ bool KeepPhotographs(const std::string& image_path,
     const std::string path =
         colmap::JoinPaths(workspace_path, "photographs.txt");
     Contents contents = ReadContents(path);
+    std::vector<std::string> others;
     for (const std::string& name : names) {
       const std::string content =
           DescribePhoto(colmap::JoinPaths(image_path, name));
       if (contents.emplace(name, content).first->second != content) {
-        throw Failure("The photograph " + name + " in " + image_path +
-                      " is another one than that which the reconstruction in " +
-                      workspace_path +
-                      " was made from; name another --workspace_path");
+        others.push_back(name);
       }
+    }
+    if (!others.empty()) {
+      PrintWarning(
+          std::to_string(others.size()) + " photographs in " + image_path +
+          ", such as " + others[0] +
+          ", are others than those that the reconstruction in " +
+          workspace_path +
+          " was made from; what is there of it is kept. To begin anew, "
+          "name another --workspace_path");
     }
     WriteContents(path, contents);
   } catch (const Failure& error) {
