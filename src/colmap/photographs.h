@@ -14,9 +14,9 @@ namespace tapa {
 std::vector<std::string> FindPhotographs(const std::string& image_path,
                                          const std::string& workspace_path);
 
-// A workspace remembers its photographs, in photographs.txt. Prints an error,
-// and returns false, if there are none, or if others have come under the same
-// names.
+// A workspace remembers its photographs, in photographs.txt. Prints a warning
+// if others have come under the same names; prints an error, and returns false,
+// if there are none.
 bool KeepPhotographs(const std::string& image_path,
                      const std::string& workspace_path);
 

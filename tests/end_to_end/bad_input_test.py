@@ -169,7 +169,7 @@ class DamagedMaps(tiny.TestCase):
         path = tiny.map_path(self.folder, "view3.png", which="photometric")
         os.truncate(path, 1000)
         with open(self.path("stereo", "patch-match.cfg"), "w") as file:
-            file.write("view0.png\nview3.png\n")
+            file.write("view0.png\n__all__\n")
         self.expect_error(path, "truncated")
 
 
@@ -189,8 +189,7 @@ class BadOptions(tiny.TestCase):
                             ("min_triangulation_angle", 180),
                             ("geom_consistency_max_cost", -1),
                             ("cache_size", 0), ("max_image_size", 0),
-                            ("gpu_index", "x"), ("gpu_index", "0,,1"),
-                            ("depth_max", 0)):
+                            ("gpu_index", "x"), ("gpu_index", "0,,1")):
             with self.subTest(name=name, value=value):
                 result = tiny.run_stereo(self.folder, **{name: value})
                 self.assert_one_error(result, "PatchMatchStereo." + name)
@@ -200,6 +199,8 @@ class BadOptions(tiny.TestCase):
         self.assert_one_error(result, "PatchMatchStereo.depth_max")
 
     def test_only_one_end_of_the_range(self):
+        result = tiny.run_stereo(self.folder, depth_max=3)
+        self.assert_one_error(result, "PatchMatchStereo.depth_min")
         result = tiny.run_stereo(self.folder, depth_min=3)
         self.assert_one_error(result, "PatchMatchStereo.depth_max")
 
