@@ -53,6 +53,8 @@ std::string Trim(const std::string& text) {
   return text.substr(begin, text.find_last_not_of(kSpace) - begin + 1);
 }
 
+bool IsNotBlank(const std::string& text) { return !Trim(text).empty(); }
+
 std::vector<std::string> ReadImageNames(
     const std::string& path,
     const std::function<bool(const std::string&)>& is_name) {

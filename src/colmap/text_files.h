@@ -34,6 +34,7 @@ std::string ReadWholeFile(const std::string& path);
 
 // Without blanks at both ends.
 std::string Trim(const std::string& text);
+bool IsNotBlank(const std::string& text);
 
 // The names in a list of images, one a line. A line that is_name knows is a
 // name as it stands; others are trimmed, and neither those that are empty then
