@@ -117,7 +117,7 @@ reconstruct_photos() {
     --PatchMatchStereo.allow_missing_files 1 --PatchMatchStereo.tapa 1
   run "$bin/colmap" stereo_fusion --workspace_path "$out/dense" \
     --output_path "$out/dense/fused.ply" "${tapa_fusion[@]}"
-  run "$here/evaluate_depth_maps" --workspace_path "$out/dense" \
+  run "$bin/evaluate_depth_maps" --workspace_path "$out/dense" \
     --pictures "$out/pictures"
   echo
   echo "Pictures: $out/pictures/"
