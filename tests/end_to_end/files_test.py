@@ -338,6 +338,14 @@ class Fusion(Workspace):
         self.expect_error("ghost.png")
 
 
+class Meshing(tiny.TestCase):
+
+    def test_no_points(self):
+        result = tiny.run([tiny.COLMAP, "poisson_mesher", "--input_path", self.path("none.ply"),
+                           "--output_path", self.path("mesh.ply")])
+        self.assert_one_error(result, self.path("none.ply"))
+
+
 class Undistorter(tiny.TestCase):
 
     def setUp(self):
@@ -368,6 +376,12 @@ class Undistorter(tiny.TestCase):
             os.remove(self.path("images", name))
         self.assert_one_error(self.undistort(), "--image_path")
         self.assertFalse(os.path.exists(self.path("u/sparse/cameras.bin")))
+
+    def test_no_photograph_of_other_formats(self):
+        for name in self.names:
+            tiny.write_png(self.path("images", name), 48, 32, bytes(48 * 32))
+        for kind in ("PMVS", "CMP-MVS"):
+            self.assert_one_error(self.undistort(output_type=kind), "--image_path")
 
     def test_never_writes_over_its_input(self):
         before = tiny.snapshot(self.folder, ".")
