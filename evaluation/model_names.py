@@ -47,12 +47,18 @@ def _read_binary(path):
     return names
 
 
+def photographs(data):
+    """Names of the files in DATA/images that the model has; all, where there is no model."""
+    names = files.names_below(os.path.join(data, "images"))
+    known = read_names(os.path.join(data, "sparse"))
+    known = None if known is None else set(known)
+    return [name for name in names if known is None or name in known]
+
+
 def main(words=None):
     data = (words or sys.argv[1:])[0]
-    known = set(read_names(os.path.join(data, "sparse")) or [])
-    for name in files.names_below(os.path.join(data, "images")):
-        if name in known:
-            sys.stdout.buffer.write(os.fsencode(name) + b"\n")
+    for name in photographs(data):
+        sys.stdout.buffer.write(os.fsencode(name) + b"\n")
     return 0
 
 

@@ -35,9 +35,7 @@ def list_views(workspace, input_type):
 
 def photographs(data, every=1):
     """Names of the photographs of the model that take part, as in make_workspace.sh."""
-    names = files.names_below(os.path.join(data, "images"))
-    known = model_names.read_names(os.path.join(data, "sparse"))
-    return [name for name in names if known is None or name in known][::every]
+    return model_names.photographs(data)[::every]
 
 
 def link(source, target):
