@@ -36,6 +36,8 @@ def check_unit(reconstruction, scan, name):
 
 def check_precision(points, least_tolerance, name):
     """Whether single precision stores coordinates to no better than a tenth of a tolerance."""
+    if points.dtype != np.float32:
+        return ""
     largest = float(max(points.max(), -points.min())) if len(points) else 0.0
     step = largest * float(np.finfo(np.float32).eps)
     if step <= least_tolerance / 10:

@@ -60,7 +60,7 @@ def rotation_of(quaternion):
 
 def _lines(path):
     try:
-        with open(path, encoding="utf-8") as file:
+        with open(path, encoding="utf-8-sig") as file:
             return [line for line in file.read().split("\n") if not line.startswith("#")]
     except (OSError, UnicodeDecodeError) as error:
         raise Failure(f"{path} cannot be read: {error}") from error

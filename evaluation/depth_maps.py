@@ -75,14 +75,26 @@ def read(path, steps_per_metre=PNG_STEPS_PER_METRE):
 def find(folder, name):
     """Path of a photograph's map in a folder, "" if there is none.
 
-    Named like the photograph, with .png or .bin, in its own sub-folder or without.
+    Named like the photograph, with its extension or without and with .png or .bin, in its own
+    sub-folder or without.
     """
-    for stem in (os.path.splitext(name)[0], os.path.splitext(os.path.basename(name))[0]):
+    for stem in (name, os.path.splitext(name)[0], os.path.splitext(os.path.basename(name))[0]):
         for extension in (".png", ".bin"):
             path = os.path.join(folder, stem + extension)
             if os.path.isfile(path):
                 return path
     return ""
+
+
+def find_all(folder, names):
+    """The same for many photographs, by name. Raises Failure if one would serve for two."""
+    paths, owners = {}, {}
+    for name in names:
+        path = paths[name] = find(folder, name)
+        if path and owners.setdefault(path, name) != name:
+            raise Failure(f"{path} could be the depth of both {owners[path]} and {name}; call it "
+                          f"{name}.png or {name}.bin, in full, in {folder}")
+    return paths
 
 
 def write_bin(path, depth):

@@ -1,5 +1,6 @@
 """Compares the depth maps of a COLMAP workspace with measured depth, and draws them."""
 
+import collections
 import os
 
 from . import command_line, depth_maps, files, workspaces
@@ -57,6 +58,13 @@ def _count_truth(folder):
     return sum(name.endswith((".png", ".bin")) for name in files.names_below(folder))
 
 
+def _picture_names(names):
+    """Names of the views' pictures: with the photograph's extension where there are others."""
+    stems = collections.Counter(os.path.splitext(name)[0] for name in names)
+    return {name: (name if stems[os.path.splitext(name)[0]] > 1 else os.path.splitext(name)[0])
+            + ".png" for name in names}
+
+
 def _print_remarks(overall, num_maps, num_truth):
     def remark(count, what, text):
         if count > 0:
@@ -76,8 +84,11 @@ def evaluate(arguments):
     scorer = WorkspaceScorer([Tolerance(value, "m") for value in arguments.tolerances]
                              + [Tolerance(value, "%") for value in arguments.relative_tolerances],
                              arguments.max_textureness)
+    names = [view.name for view in views]
+    truths = depth_maps.find_all(truth_folder, names) if truth_folder else {}
+    pictures = _picture_names(names)
     for view in views:
-        path = truth_folder and depth_maps.find(truth_folder, view.name)
+        path = truths.get(view.name)
         if not (path or arguments.pictures):
             continue
         depth = depth_maps.read_map(view.depth)
@@ -86,8 +97,8 @@ def evaluate(arguments):
             scorer.add(view, depth, truth)
         if arguments.pictures:
             from . import view_picture  # Takes a second.
-            picture = os.path.splitext(view.name)[0] + ".png"
-            view_picture.draw(os.path.join(arguments.pictures, picture), view, depth, truth)
+            picture = os.path.join(arguments.pictures, pictures[view.name])
+            view_picture.draw(picture, view, depth, truth)
     if not truth_folder:
         return None
     if not scorer.scores:

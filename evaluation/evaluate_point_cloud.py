@@ -105,13 +105,29 @@ def _read_scans(listed, reconstruction, arguments):
     return scans
 
 
+def _local_origin(reconstruction, listed):
+    """What to subtract from all coordinates of the world, as those of UTM are too large."""
+    if not point_clouds.is_far(reconstruction):
+        return np.zeros(3)
+    first = listed[0][1][:3, 3]
+    return first if point_clouds.is_far(first) else np.floor(np.median(reconstruction, axis=0))
+
+
+def _moved(pose, origin):
+    moved = pose.copy()
+    moved[:3, 3] -= origin
+    return moved
+
+
 def _summarize(points, verdicts, cloud_path, arguments):
     """Writes the coloured clouds, if they are wanted, and takes the mean."""
     tolerances = arguments.tolerances
     for number, tolerance in enumerate(tolerances if cloud_path else ()):
         colors = np.where(verdicts.judged[:, None], np.uint8(_BAD), np.uint8(_NOT_JUDGED))
         colors[verdicts.good_at(number)] = _GOOD
-        point_clouds.write_ply(f"{cloud_path}.tolerance_{tolerance:g}.ply", points, colors)
+        point_clouds.write_ply(f"{cloud_path}.tolerance_{tolerance:g}.ply",
+                               points + arguments.origin if arguments.origin.any() else points,
+                               colors)
     return average(points, verdicts, len(tolerances), arguments.voxel_size)
 
 
@@ -139,6 +155,13 @@ def main(words=None):
     arguments = _parse(words)
     listed = meshlab_project.read(arguments.ground_truth_mlp_path)
     reconstruction = _read_reconstruction(arguments)
+    arguments.origin = _local_origin(reconstruction, listed)
+    if arguments.origin.any():
+        _say("Everything is moved by "
+             + " ".join(f"{value:.12g}" for value in -arguments.origin)
+             + ", as coordinates are large")
+        reconstruction = (reconstruction - arguments.origin).astype(np.float32)
+        listed = [(path, _moved(pose, arguments.origin)) for path, pose in listed]
     scans = _read_scans(listed, reconstruction, arguments)
     completeness = _completeness(reconstruction, scans, arguments)
     accuracy = _accuracy(reconstruction, scans, arguments)

@@ -1,7 +1,7 @@
 """Point clouds in PLY files.
 
-Points are float32 of shape (n, 3), in the unit and the frame of their file. Unreadable
-files raise Failure with the path in the message.
+Points are float32 of shape (n, 3), in the unit and the frame of their file, or float64 if the
+file has them so and they are far from the origin (is_far). Unreadable files raise Failure with the path in the message.
 
 The reader is our own, as Debian 12 has none that takes every kind of PLY: ascii or binary of
 either byte order, properties of any type in any order, lists and other elements among them.
@@ -25,6 +25,7 @@ _TYPES = {name: code for names, code in (
 _SIZE_TYPES = {name: code for name, code in _TYPES.items() if code[0] != "f"}
 _BYTE_ORDERS = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
 _MAX_LINE = 65536  # Headers have short lines; what does not is another kind of file.
+_FAR = 1000.0  # Metres.
 _ROWS = 1 << 18  # That are read at a time.
 
 
@@ -45,6 +46,11 @@ class _Element(NamedTuple):
         return any(entry.size_type for entry in self.properties)
 
 
+def is_far(values):
+    """Whether single precision stores coordinates to no better than a tenth of a millimetre."""
+    return bool(len(values)) and bool(np.abs(values).max() > _FAR)
+
+
 def read_ply(path):
     """Points of a file, and how many were left out as they are not finite."""
     try:
@@ -52,9 +58,11 @@ def read_ply(path):
             points = _read_vertices(file, path)
     except OSError as error:
         raise Failure(f"{path} cannot be read: {error.strerror}") from error
-    finite = np.isfinite(points).all(axis=1)
+    # Of single precision: what is beyond its range is as good as infinite.
+    finite = (np.abs(points) <= np.finfo(np.float32).max).all(axis=1)
     num_left_out = len(points) - np.count_nonzero(finite)
-    return points[finite] if num_left_out else points, num_left_out
+    points = points[finite] if num_left_out else points
+    return points if is_far(points) else points.astype(np.float32, copy=False), num_left_out
 
 
 def _read_vertices(file, path):
@@ -65,7 +73,8 @@ def _read_vertices(file, path):
         columns = _coordinate_columns(element, path) if is_vertex else []
         # A wrong header must not ask for all memory; what is not touched is not taken.
         most = min(element.count, os.fstat(file.fileno()).st_size)
-        points = np.empty((most if is_vertex else 0, 3), np.float32)
+        is_double = is_vertex and all(element.properties[i].type == "f8" for i in columns)
+        points = np.empty((most if is_vertex else 0, 3), np.float64 if is_double else np.float32)
         end = 0
         # What has no properties takes no place in the file.
         for rows in source.rows(element, columns, path) if element.properties else ():
@@ -240,7 +249,8 @@ def _rows_with_lists(source, element, columns, path):
 
 def write_ply(path, points, colors=None):
     """Writes points as binary PLY, with colours (n, 3) of red, green and blue, 0 to 255."""
-    fields = [(name, "<f4", "float", points[:, i]) for i, name in enumerate("xyz")]
+    code, kind = ("<f8", "double") if points.dtype == np.float64 else ("<f4", "float")
+    fields = [(name, code, kind, points[:, i]) for i, name in enumerate("xyz")]
     if colors is not None:
         fields += [(name, "u1", "uchar", colors[:, i])
                    for i, name in enumerate(("red", "green", "blue"))]

@@ -11,11 +11,14 @@ import dataclasses
 import glob
 import os
 
-from . import files, machine, processes, record
+import numpy as np
+
+from . import files, machine, point_clouds, processes, record
 from .methods import FUSION_AGREEMENT, FUSION_COLMAP, FUSION_HIGH, METHODS
 from .processes import Failure
 from .steps import Step
 
+_NO_POINTS = "No points could be fused"  # As stereo_fusion says it.
 # Options of stereo_fusion by the name of the cloud, FOLDER/NAME.ply.
 FUSIONS = {"fused": FUSION_HIGH, "fused_default": FUSION_COLMAP,
            "fused_agreement": FUSION_AGREEMENT}
@@ -228,7 +231,14 @@ class Fusion(Step):
         for command in self.commands():
             content.forget(self._cloud)
             content.fusion_options[self._cloud] = run.fusions[self._cloud]
-            run.execute(content, self._cloud, command, "fusion.log")
+            try:
+                run.execute(content, self._cloud, command, "fusion.log")
+            except processes.ProgramFailed as error:
+                if _NO_POINTS not in str(error):
+                    raise
+                # That is a result here, and has a score.
+                point_clouds.write_ply(run.path(self._cloud + ".new.ply"),
+                                       np.empty((0, 3), np.float32), np.empty((0, 3), np.uint8))
             for end in (".ply.vis", ".ply"):
                 new = run.path(self._cloud + ".new" + end)
                 if os.path.exists(new):

@@ -3,7 +3,7 @@
 import os
 from typing import NamedTuple
 
-from . import files
+from . import files, model_names
 from .processes import Failure
 
 _KINDS = (".geometric", ".photometric", "")
@@ -34,8 +34,8 @@ def list_views(workspace, input_type):
 
 
 def photographs(data, every=1):
-    """Names of the photographs that take part, as in make_workspace.sh."""
-    return files.names_below(os.path.join(data, "images"))[::every]
+    """Names of the photographs of the model that take part, as in make_workspace.sh."""
+    return model_names.photographs(data)[::every]
 
 
 def link(source, target):

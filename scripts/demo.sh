@@ -54,6 +54,14 @@ largest_model() {
   echo "$best"
 }
 
+# Names of the photographs in folder $1, without hidden files and what is in $2.
+list_photographs() {
+  (cd "$1" && find -L . -samefile "$2" -prune -o \
+    -type f -not -name '.*' \
+    -iregex '.*\.\(jpe?g\|png\|tiff?\|bmp\|ppm\)' -print) |
+    sed 's|^\./||' | LC_ALL=C sort
+}
+
 # Camera poses and sparse points, unless a run before has them.
 reconstruct_sparse() {
   local photos=$1 out=$2 count=$3 matcher=exhaustive_matcher
@@ -63,7 +71,8 @@ reconstruct_sparse() {
     echo "More than 200 photographs: each is matched with its neighbours in the order of names only."
   fi
   run "$bin/colmap" feature_extractor --database_path "$out/database.db" \
-    --image_path "$photos" --SiftExtraction.use_gpu 0
+    --image_path "$photos" --image_list_path "$out/photographs.list" \
+    --SiftExtraction.use_gpu 0
   run "$bin/colmap" "$matcher" --database_path "$out/database.db" \
     --SiftMatching.use_gpu 0
   rm -rf "$out/sparse"
@@ -74,19 +83,21 @@ reconstruct_sparse() {
 }
 
 reconstruct_photos() {
-  local photos out=${2:-} size=${MAX_IMAGE_SIZE:-1600} list count model
+  local photos out=${2:-} size=${MAX_IMAGE_SIZE:-1600} list sums count model
   [[ -d $1 ]] || fail "there is no folder $1"
   photos=$(cd "$1" && pwd)
-  list=$(find -L "$photos" -type f -iregex '.*\.\(jpe?g\|png\|tiff?\|bmp\|ppm\)' | LC_ALL=C sort)
-  count=$(grep -c . <<<"$list" || true)
-  [[ $count -ge 3 ]] || fail "$photos has $count photographs; at least 3 are needed"
   mkdir -p "${out:=$photos-reconstruction}"
   out=$(cd "$out" && pwd)
+  list=$(list_photographs "$photos" "$out")
+  count=$(grep -c . <<<"$list" || true)
+  [[ $count -ge 3 ]] || fail "$photos has $count photographs; at least 3 are needed"
   # What was made in OUT must have been made from the same photographs.
-  list+=$'\n'"at most $size pixels"
-  [[ ! -e $out/photographs.txt || $(<"$out/photographs.txt") == "$list" ]] ||
+  sums=$(cd "$photos" && tr '\n' '\0' <<<"$list" | xargs -0 cksum --)
+  sums+=$'\n'"at most $size pixels"
+  [[ ! -e $out/photographs.txt || $(<"$out/photographs.txt") == "$sums" ]] ||
     fail "$out has a reconstruction of other photographs or another MAX_IMAGE_SIZE; remove it or name another folder"
-  echo "$list" >"$out/photographs.txt"
+  echo "$sums" >"$out/photographs.txt"
+  echo "$list" >"$out/photographs.list"
 
   reconstruct_sparse "$photos" "$out" "$count"
   model=$(largest_model "$out/sparse") ||
@@ -102,7 +113,7 @@ reconstruct_photos() {
     --PatchMatchStereo.allow_missing_files 1 --PatchMatchStereo.tapa 1
   run "$bin/colmap" stereo_fusion --workspace_path "$out/dense" \
     --output_path "$out/dense/fused.ply"
-  run "$here/evaluate_depth_maps" --workspace_path "$out/dense" \
+  run "$bin/evaluate_depth_maps" --workspace_path "$out/dense" \
     --pictures "$out/pictures"
   echo
   echo "Pictures: $out/pictures/"

@@ -7,8 +7,10 @@
 # SOURCES is the number of source views per photograph (10). With EVERY n > 1,
 # only every n-th photograph takes part, and its sources, named one by one, are
 # its neighbours among those in the order of names. DATA is not changed; its
-# photographs are linked.
+# photographs are linked; those that the model does not have are left out.
 set -euo pipefail
+
+root=$(cd "$(dirname "$0")/.." && pwd)
 
 fail() {
   echo "ERROR: $*" >&2
@@ -34,8 +36,9 @@ for part in images sparse; do
     fail "$workspace has a folder $part of its own; name another workspace"
   ln -sfn "$data/$part" "$workspace/$part"
 done
-mapfile -t names < <(cd "$data/images" && find -L . -type f | sed 's|^\./||' | LC_ALL=C sort | awk "NR % $every == 1 % $every")
-[[ ${#names[@]} -ge 2 ]] || fail "$data/images has fewer than two photographs to use"
+list=$(PYTHONPATH=$root /usr/bin/python3 -B -m evaluation.model_names "$data")
+mapfile -t names < <(awk "NF && NR % $every == 1 % $every" <<<"$list")
+[[ ${#names[@]} -ge 2 ]] || fail "$data/images has fewer than two photographs of the model to use"
 
 config=$workspace/stereo/patch-match.cfg
 : >"$config.tmp"

@@ -4,6 +4,8 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <climits>
 #include <csignal>
@@ -25,11 +27,28 @@ std::string TemporaryMark() {
   return std::string(".part-") + host + "-";
 }
 
+// Beside the file, and unlike any other. A long name is cut, so that there is
+// room for the mark.
+std::string TemporaryPath(const std::string& path) {
+  static std::atomic<int> counter(0);
+  const std::string end = TemporaryMark() + std::to_string(getpid()) + "-" +
+                          std::to_string(counter++);
+  const size_t name = path.rfind('/') + 1;
+  return path.substr(0, name) +
+         path.substr(name, NAME_MAX - std::min<size_t>(end.size(), NAME_MAX)) +
+         end;
+}
+
+// Some mounts have no fsync: what they keep is theirs to see to.
+bool Synchronize(int file) {
+  return fsync(file) == 0 || errno == EINVAL || errno == ENOSYS ||
+         errno == ENOTSUP;
+}
+
 }  // namespace
 
 AtomicFile::AtomicFile(const std::string& path)
-    : path_(path),
-      temporary_path_(path + TemporaryMark() + std::to_string(getpid())) {
+    : path_(path), temporary_path_(TemporaryPath(path)) {
   file_ = open(temporary_path_.c_str(),
                O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (file_ < 0) {
@@ -60,7 +79,7 @@ void AtomicFile::Write(const void* data, size_t size) {
 }
 
 void AtomicFile::Commit() {
-  if (fsync(file_) != 0) {
+  if (!Synchronize(file_)) {
     Fail();
   }
   const int file = file_;

@@ -106,6 +106,8 @@ void WriteFile(const std::string& path, int width, int height, int channels,
 
 }  // namespace
 
+void CheckMapFile(const std::string& path, MapKind kind) { Open(path, kind); }
+
 void CheckMapFile(const std::string& path, MapKind kind, int width,
                   int height) {
   const OpenMap map = Open(path, kind);

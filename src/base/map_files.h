@@ -22,8 +22,9 @@ namespace tapa {
 // asks for.
 enum class MapKind { kDepth, kNormal, kConsistencyGraph };
 
-// Throws Failure that names the file and what is wrong with it, unless it is a
-// valid one of this kind and size.
+// Throw Failure that names the file and what is wrong with it, unless it is a
+// valid one of this kind, and of this size.
+void CheckMapFile(const std::string& path, MapKind kind);
 void CheckMapFile(const std::string& path, MapKind kind, int width, int height);
 
 // Width and height of a valid file. Throws Failure as CheckMapFile does.

@@ -1,6 +1,7 @@
 #include "src/colmap/engine_options.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "src/base/failure.h"
@@ -21,11 +22,15 @@ void CheckOptions(const PatchMatchOptions& options) {
                 options.tapa_debug.empty() || options.tapa.enabled,
                 "empty unless tapa is on: there would be nothing to draw");
     if (options.depth_min >= 0 || options.depth_max >= 0) {
-      CheckOption("depth_min", options.depth_min, options.depth_min > 0,
-                  "positive where depth_max is given (-1 for both: from the "
+      CheckOption("depth_min", options.depth_min, options.depth_min >= 0,
+                  "at least 0 where depth_max is given (-1 for both: from the "
                   "sparse model)");
       CheckOption("depth_max", options.depth_max,
-                  options.depth_max >= options.depth_min, "at least depth_min");
+                  options.depth_max > 0 &&
+                      options.depth_max >= options.depth_min &&
+                      std::isfinite(options.depth_max),
+                  "positive and at least depth_min where that is given (-1 for "
+                  "both: from the sparse model)");
     }
   } catch (const std::invalid_argument& error) {
     throw Failure(std::string("PatchMatchStereo.") + error.what());

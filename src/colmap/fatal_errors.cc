@@ -2,13 +2,53 @@
 
 #include <unistd.h>
 
+#include <atomic>
 #include <cstdlib>
+#include <exception>
 #include <iostream>
+#include <new>
 
 namespace tapa {
+namespace {
+
+FatalErrors* innermost = nullptr;
+std::atomic<bool> has_failed{false};
+
+// Other threads may still run.
+[[noreturn]] void ExitNow() {
+  std::cout << std::flush;
+  std::cerr << std::flush;
+  _exit(EXIT_FAILURE);
+}
+
+void PrintException(const std::exception_ptr& exception) {
+  try {
+    std::rethrow_exception(exception);
+  } catch (const std::bad_alloc&) {
+    PrintError("There is not enough memory");
+  } catch (const std::exception& error) {
+    PrintError(error.what());
+  } catch (...) {
+    PrintError("Something unknown went wrong");
+  }
+}
+
+// Of an exception that a thread did not catch.
+[[noreturn]] void Terminate() {
+  if (const std::exception_ptr exception = std::current_exception()) {
+    PrintException(exception);
+    ExitNow();
+  }
+  std::abort();
+}
+
+}  // namespace
 
 FatalErrors::FatalErrors(const std::string& context)
-    : context_(context), stderr_threshold_(FLAGS_stderrthreshold) {
+    : context_(context),
+      stderr_threshold_(FLAGS_stderrthreshold),
+      outer_(innermost) {
+  innermost = this;
   google::AddLogSink(this);
   // Otherwise the library would print a line of its own as well.
   FLAGS_stderrthreshold = google::NUM_SEVERITIES;
@@ -17,12 +57,13 @@ FatalErrors::FatalErrors(const std::string& context)
 FatalErrors::~FatalErrors() {
   FLAGS_stderrthreshold = stderr_threshold_;
   google::RemoveLogSink(this);
+  innermost = outer_;
 }
 
 void FatalErrors::send(google::LogSeverity severity, const char*, const char*,
                        int, const struct ::tm*, const char* message,
                        size_t length) {
-  if (severity < google::GLOG_ERROR) {
+  if (severity < google::GLOG_ERROR || this != innermost) {
     return;
   }
   std::string text(message, length);
@@ -34,9 +75,29 @@ void FatalErrors::send(google::LogSeverity severity, const char*, const char*,
   std::cout << std::flush;
   std::cerr << "ERROR: " << context_ << ": " << text << std::endl;
   if (severity == google::GLOG_FATAL) {
-    // Not exit(): other threads still run.
-    _exit(EXIT_FAILURE);
+    ExitNow();
   }
+}
+
+void PrintError(const std::string& text) {
+  std::cout << std::flush;
+  std::cerr << "ERROR: " << text << "." << std::endl;
+  has_failed = true;
+}
+
+int RunCommand(const std::string& name,
+               const std::function<int(int, char**)>& command, int argc,
+               char** argv) {
+  const FatalErrors fatal_errors(name);
+  std::set_terminate(&Terminate);
+  try {
+    const int status = command(argc, argv);
+    return status == EXIT_SUCCESS && has_failed ? EXIT_FAILURE : status;
+  } catch (...) {
+    PrintException(std::current_exception());
+  }
+  // Threads that are left must not come upon what is being destroyed.
+  ExitNow();
 }
 
 }  // namespace tapa

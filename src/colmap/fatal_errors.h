@@ -4,6 +4,7 @@
 #include <glog/logging.h>
 
 #include <ctime>
+#include <functional>
 #include <string>
 
 // This header is included by COLMAP's own sources.
@@ -12,7 +13,7 @@ namespace tapa {
 
 // While one of these lives, what COLMAP checks with CHECK and LOG(FATAL) ends
 // the program with one line "ERROR: CONTEXT: ..." and exit status 1, in place
-// of a stack trace and an abort. Of several that are nested the innermost speaks.
+// of a stack trace and an abort. The innermost one's context counts.
 class FatalErrors : public google::LogSink {
  public:
   explicit FatalErrors(const std::string& context);
@@ -29,7 +30,18 @@ class FatalErrors : public google::LogSink {
  private:
   const std::string context_;
   const int stderr_threshold_;
+  FatalErrors* const outer_;
 };
+
+// Prints a line "ERROR: TEXT." for what ends a part of the work but not the
+// program, whose exit status will be 1.
+void PrintError(const std::string& text);
+
+// Runs a command of the program such that it never aborts: a failed check, and
+// an exception in any thread, become a line and exit status 1.
+int RunCommand(const std::string& name,
+               const std::function<int(int, char**)>& command, int argc,
+               char** argv);
 
 }  // namespace tapa
 

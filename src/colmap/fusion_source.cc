@@ -2,33 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <map>
 
 #include "src/base/failure.h"
-#include "src/colmap/progress.h"
+#include "src/colmap/fusion_input.h"
 #include "src/fusion/packed_normal.h"
 #include "util/bitmap.h"
 #include "util/misc.h"
 
 namespace tapa {
 namespace {
-
-// The names that fusion.cfg lists, without comments.
-std::vector<std::string> ReadNames(const std::string& path) {
-  if (!colmap::ExistsFile(path)) {
-    throw Failure("There is no list of images " + path +
-                  "; image_undistorter writes it");
-  }
-  std::vector<std::string> names;
-  for (std::string name : colmap::ReadTextFileLines(path)) {
-    colmap::StringTrim(&name);
-    if (!name.empty() && name[0] != '#') {
-      names.push_back(name);
-    }
-  }
-  return names;
-}
 
 // The same camera for an image of another size.
 void Resize(int width, int height, SceneView* view) {
@@ -42,50 +24,19 @@ void Resize(int width, int height, SceneView* view) {
   view->height = height;
 }
 
-std::string SizeText(int width, int height) {
-  return std::to_string(width) + "x" + std::to_string(height);
-}
-
-// Whether a map may belong to a photograph: of the same shape to a pixel, and
-// not larger.
-bool Fits(int width, int height, const SceneView& view) {
-  const double difference = std::abs(1.0 * width * view.photo_height -
-                                     1.0 * height * view.photo_width);
-  return width <= view.photo_width && height <= view.photo_height &&
-         difference <= std::max(view.photo_width, view.photo_height);
-}
-
 }  // namespace
 
 FusionSource::FusionSource(const colmap::mvs::StereoFusionOptions& options,
                            const WorkspaceLocation& location, Pass pass)
     : options_(options), location_(location), pass_(pass) {
-  const std::string list =
-      colmap::JoinPaths(location.StereoPath(), "fusion.cfg");
-  const colmap::mvs::Model model = ReadWorkspace(location);
-  const std::vector<SceneView> scene = SceneViews(model, -1);
-  std::map<std::string, int> indices;
-  for (size_t i = 0; i < scene.size(); ++i) {
-    indices[scene[i].name] = static_cast<int>(i);
-  }
-  const std::vector<std::string> names = ReadNames(list);
-  std::vector<char> is_listed(scene.size());
-  for (const std::string& name : names) {
-    const auto found = indices.find(name);
-    if (found == indices.end()) {
-      throw Failure(list + " names " + name +
-                    ", which is not in the sparse model");
-    }
-    SceneView view = scene[found->second];
-    if (!is_listed[found->second] && FindMaps(&view)) {
-      views_.push_back(view);
-      model_indices_.push_back(found->second);
-    }
-    is_listed[found->second] = true;
-  }
-  if (views_.empty()) {
-    throw Failure("There are no " + std::string(PassName(pass)) + " maps in " +
-                  location.StereoPath() + "; patch_match_stereo computes them");
+  const colmap::mvs::Model model = ReadModel(location);
+  origin_ = model.origin;
+  const std::vector<SceneView> scene =
+      SceneViews(model, /* max_image_size */ -1);
+  model_indices_ = ViewsToFuse(scene, location, pass, options.mask_path);
+  for (const int index : model_indices_) {
+    views_.push_back(scene[index]);
+    FitToMaps(&views_.back());
   }
   neighbors_ = Neighbors(model);
   surfaces_ = std::make_unique<ViewCache<SurfacePixel>>(
@@ -93,30 +44,16 @@ FusionSource::FusionSource(const colmap::mvs::StereoFusionOptions& options,
       [this](int view) { return ReadSurface(view); });
 }
 
-bool FusionSource::FindMaps(SceneView* view) const {
-  const std::string depth_path =
-      location_.MapPath(MapKind::kDepth, view->name, pass_, 0);
-  const std::string normal_path =
-      location_.MapPath(MapKind::kNormal, view->name, pass_, 0);
-  if (!colmap::ExistsPath(depth_path) && !colmap::ExistsPath(normal_path)) {
-    PrintWarning("There are no maps of " + view->name + " (" + depth_path +
-                 "); it is left out.");
-    return false;
-  }
-  const auto [width, height] = ReadMapSize(depth_path, MapKind::kDepth);
-  CheckMapFile(normal_path, MapKind::kNormal, width, height);
-  if (!Fits(width, height, *view)) {
-    throw Failure(depth_path + " has " + SizeText(width, height) +
-                  " pixels, which is not the shape of its photograph of " +
-                  SizeText(view->photo_width, view->photo_height));
-  }
+void FusionSource::FitToMaps(SceneView* view) const {
+  const auto [width, height] =
+      ReadMapSize(location_.MapPath(MapKind::kDepth, view->name, pass_, 0),
+                  MapKind::kDepth);
   const double longest = std::max(width, height);
   const double scale = options_.max_image_size > 0
                            ? std::min(1.0, options_.max_image_size / longest)
                            : 1;
   Resize(std::max(1, static_cast<int>(std::lround(scale * width))),
          std::max(1, static_cast<int>(std::lround(scale * height))), view);
-  return true;
 }
 
 std::vector<std::vector<int>> FusionSource::Neighbors(

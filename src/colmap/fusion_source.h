@@ -1,6 +1,7 @@
 #ifndef TAPA_SRC_COLMAP_FUSION_SOURCE_H_
 #define TAPA_SRC_COLMAP_FUSION_SOURCE_H_
 
+#include <Eigen/Core>
 #include <memory>
 #include <string>
 #include <vector>
@@ -14,11 +15,10 @@
 
 namespace tapa {
 
-// The views of a workspace that fusion.cfg lists and that have maps.
+// The views of a workspace to fuse.
 class FusionSource {
  public:
-  // Throws Failure, which names the file, if maps are damaged or not of the
-  // shape of their photograph, or if there are none.
+  // Throws Failure as ViewsToFuse does.
   FusionSource(const colmap::mvs::StereoFusionOptions& options,
                const WorkspaceLocation& location, Pass pass);
 
@@ -26,13 +26,15 @@ class FusionSource {
   // them throws Failure there.
   FusionProblem Problem();
 
+  // What the problem is relative to (LocalOrigin).
+  const Eigen::Vector3d& Origin() const { return origin_; }
   // Index in the model and name of a view of the problem.
   int ModelIndex(int view) const { return model_indices_[view]; }
   const std::string& Name(int view) const { return views_[view].name; }
 
  private:
-  // Returns whether the view has maps.
-  bool FindMaps(SceneView* view) const;
+  // Gives a view the size of its maps, or of max_image_size.
+  void FitToMaps(SceneView* view) const;
   std::vector<std::vector<int>> Neighbors(
       const colmap::mvs::Model& model) const;
   SurfaceMap ReadSurface(int view) const;
@@ -42,7 +44,7 @@ class FusionSource {
   const colmap::mvs::StereoFusionOptions& options_;
   const WorkspaceLocation location_;
   const Pass pass_;
-  // At the size of their maps, or of max_image_size.
+  Eigen::Vector3d origin_;
   std::vector<SceneView> views_;
   std::vector<int> model_indices_;
   std::vector<std::vector<int>> neighbors_;

@@ -1,13 +1,15 @@
 #include "src/colmap/problem_config.h"
 
 #include <algorithm>
-#include <fstream>
 #include <map>
 #include <unordered_map>
 #include <unordered_set>
 
 #include "src/base/failure.h"
+#include "src/colmap/dense_model.h"
+#include "src/colmap/text_files.h"
 #include "util/math.h"
+#include "util/misc.h"
 
 namespace tapa {
 namespace {
@@ -16,28 +18,56 @@ namespace {
 // the angles at their common points.
 constexpr float kTriangulationAnglePercentile = 75;
 
-std::string Trim(const std::string& text) {
-  constexpr char kSpace[] = " \t\r\n\v\f";
-  const size_t begin = text.find_first_not_of(kSpace);
-  if (begin == std::string::npos) {
-    return "";
+// The name of an image that a part of a line stands for: as it is, or without
+// the blanks around it; empty: none.
+std::string FindName(const std::string& text, const IsName& is_name) {
+  const bool has_blank = !text.empty() && text[0] == ' ';
+  for (const std::string& name : {text.substr(has_blank), text, Trim(text)}) {
+    if (is_name(name)) {
+      return name;
+    }
   }
-  return text.substr(begin, text.find_last_not_of(kSpace) - begin + 1);
+  return "";
 }
 
-// The parts of a line between commas or semicolons, without empty ones.
-std::vector<std::string> SplitList(const std::string& line) {
+// The parts of a line between commas or semicolons, without empty ones. A name
+// that has such in it is one part.
+std::vector<std::string> SplitList(const std::string& line,
+                                   const IsName& is_name) {
+  constexpr size_t kMaxNameSize = 4096;
+  const auto find_end = [&line](size_t begin) {
+    return std::min(line.find_first_of(",;", begin), line.size());
+  };
   std::vector<std::string> items;
   size_t begin = 0;
   while (begin <= line.size()) {
-    const size_t end = std::min(line.find_first_of(",;", begin), line.size());
-    const std::string item = Trim(line.substr(begin, end - begin));
+    size_t end = find_end(begin);
+    std::string item = Trim(line.substr(begin, end - begin));
+    for (size_t stop = end; stop - begin < kMaxNameSize;
+         stop = find_end(stop + 1)) {
+      const std::string name =
+          FindName(line.substr(begin, stop - begin), is_name);
+      if (!name.empty()) {
+        item = name;
+        end = stop;
+        break;
+      }
+      if (stop == line.size()) {
+        break;
+      }
+    }
     if (!item.empty()) {
       items.push_back(item);
     }
     begin = end + 1;
   }
   return items;
+}
+
+// Names may begin with #, too.
+bool IsComment(const std::string& line, const IsName& is_name) {
+  return Trim(line)[0] == '#' && !is_name(line) &&
+         !is_name(SplitList(line, is_name)[0]);
 }
 
 // Returns 0 if the text is not a number from 1 on.
@@ -50,10 +80,10 @@ int ParseCount(const std::string& text) {
 }
 
 ViewConfig ParseView(const std::string& path, const std::string& reference,
-                     const std::string& sources_line) {
+                     const std::string& sources_line, const IsName& is_name) {
   ViewConfig view;
   view.reference = reference;
-  const std::vector<std::string> items = SplitList(sources_line);
+  const std::vector<std::string> items = SplitList(sources_line, is_name);
   if (items.size() == 1 && items[0] == "__all__") {
     view.sources = ViewConfig::Sources::kAll;
   } else if (!items.empty() && items[0] == "__auto__") {
@@ -88,6 +118,9 @@ class SharedPointRanking {
       angles_ =
           model_.ComputeTriangulationAngles(kTriangulationAnglePercentile);
     }
+    if (num_points_.at(reference).empty()) {
+      return NeighborsByCameras(model_, reference, max_num_sources);
+    }
     std::vector<std::pair<int, int>> views;
     for (const auto& view : num_points_.at(reference)) {
       if (angles_.at(reference).at(view.first) >= min_angle_) {
@@ -116,9 +149,9 @@ class SharedPointRanking {
 
 }  // namespace
 
-std::vector<ViewConfig> ReadProblemConfig(const std::string& path) {
-  std::ifstream file(path);
-  if (!file) {
+std::vector<ViewConfig> ReadProblemConfig(const std::string& path,
+                                          const IsName& is_name) {
+  if (!colmap::ExistsFile(path)) {
     throw Failure("There is no " + path +
                   ", which lists the views to compute; image_undistorter "
                   "writes it");
@@ -126,20 +159,17 @@ std::vector<ViewConfig> ReadProblemConfig(const std::string& path) {
   std::vector<ViewConfig> config;
   std::string reference;
   std::string line;
-  while (std::getline(file, line)) {
-    line = Trim(line);
-    if (line.empty() || line[0] == '#') {
+  for (TextLines lines(path); lines.Next(&line);) {
+    const std::string trimmed = Trim(line);
+    if (trimmed.empty() || IsComment(line, is_name)) {
       continue;
     }
     if (reference.empty()) {
-      reference = line;
+      reference = is_name(line) ? line : trimmed;
     } else {
-      config.push_back(ParseView(path, reference, line));
+      config.push_back(ParseView(path, reference, line, is_name));
       reference.clear();
     }
-  }
-  if (file.bad()) {
-    throw Failure("Cannot read " + path);
   }
   if (!reference.empty()) {
     throw Failure(path + ": " + reference +

@@ -1,6 +1,7 @@
 #ifndef TAPA_SRC_COLMAP_PROBLEM_CONFIG_H_
 #define TAPA_SRC_COLMAP_PROBLEM_CONFIG_H_
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -13,7 +14,8 @@ struct ViewConfig {
   enum class Sources {
     // "__all__": every other view.
     kAll,
-    // "__auto__, N": the N views that share the most points with it.
+    // "__auto__, N": the N views that share the most points with it. Where the
+    // model has no points, those whose cameras stand near and look alike.
     kAuto,
     // "a.jpg, b.jpg"
     kNamed,
@@ -27,10 +29,15 @@ struct ViewConfig {
   std::vector<std::string> source_names;
 };
 
+// Whether the model has an image of a name.
+using IsName = std::function<bool(const std::string&)>;
+
 // Reads pairs of lines: the name of a reference view, then its sources. Empty
-// lines and those that begin with # do not count. Throws Failure for a file
-// that is not there or makes no sense.
-std::vector<ViewConfig> ReadProblemConfig(const std::string& path);
+// lines and those that begin with # do not count, unless they are the name of
+// an image; names may have the commas and semicolons that stand between names.
+// Throws Failure for a file that is not there or makes no sense.
+std::vector<ViewConfig> ReadProblemConfig(const std::string& path,
+                                          const IsName& is_name);
 
 // A reference view and its sources, as indices into the model's images.
 struct ViewIndices {

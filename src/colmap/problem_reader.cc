@@ -11,6 +11,9 @@
 namespace tapa {
 namespace {
 
+// Relative to the largest one.
+constexpr float kSmallestDepth = 1e-4f;
+
 double CacheBytes(const StereoPlan& plan) {
   const double gigabytes = plan.passes.back().options.cache_size;
   const double memory = 1.0 * sysconf(_SC_PHYS_PAGES) * sysconf(_SC_PAGESIZE);
@@ -132,8 +135,12 @@ std::unique_ptr<ProblemInput> ProblemReader::Read(
     to.reference_color = &*input->color;
   }
   const bool has_range = pass.options.depth_min >= 0;
-  to.depth_min = has_range ? pass.options.depth_min : reference.depth_min;
-  to.depth_max = has_range ? pass.options.depth_max : reference.depth_max;
+  to.depth_min = static_cast<float>(has_range ? pass.options.depth_min
+                                              : reference.depth_min);
+  to.depth_max = static_cast<float>(has_range ? pass.options.depth_max
+                                              : reference.depth_max);
+  // The engine takes no 0, by which users mean that there is no lower end.
+  to.depth_min = std::max(to.depth_min, kSmallestDepth * to.depth_max);
   return input;
 }
 

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <iostream>
+#include <map>
 #include <optional>
+#include <set>
 #include <sstream>
-#include <unordered_set>
 
 #include "src/base/failure.h"
 #include "src/colmap/engine_options.h"
@@ -17,15 +18,13 @@ namespace {
 using colmap::ExistsPath;
 using colmap::mvs::PatchMatchOptions;
 
-// Finds images and maps that are missing, and views that have no sources.
+// Finds images that are missing, and views that have no sources.
 class MissingFiles {
  public:
   // Throws Failure if something is missing that the options do not allow to
   // leave out, or if nothing is left.
   static void Drop(const PatchMatchOptions& options, StereoPlan* plan) {
-    // A view that is dropped makes no map for others.
-    while (MissingFiles(options, plan).DropOnce()) {
-    }
+    MissingFiles(options, plan).Drop();
     if (plan->problems.empty()) {
       throw Failure("There is no view left that stereo can be computed for");
     }
@@ -33,14 +32,9 @@ class MissingFiles {
 
  private:
   MissingFiles(const PatchMatchOptions& options, StereoPlan* plan)
-      : options_(options), plan_(plan) {
-    for (const ViewIndices& problem : plan->problems) {
-      computed_.insert(problem.reference);
-    }
-  }
+      : options_(options), plan_(plan) {}
 
-  // Returns whether it has dropped anything.
-  bool DropOnce() {
+  void Drop() {
     std::vector<ViewIndices> kept;
     for (const ViewIndices& problem : plan_->problems) {
       std::string lack = LackOf(problem.reference);
@@ -50,8 +44,8 @@ class MissingFiles {
         rest.sources = UsableSources(problem);
         if (rest.sources.empty()) {
           lack =
-              "it has no source images (none shares enough points with it, or "
-              "none is named)";
+              "it has no source images (none shares enough points with it, "
+              "none is named, or none is there)";
         }
       }
       if (lack.empty()) {
@@ -62,7 +56,6 @@ class MissingFiles {
       }
     }
     plan_->problems = kept;
-    return has_dropped_;
   }
 
   std::vector<int> UsableSources(const ViewIndices& problem) {
@@ -85,13 +78,6 @@ class MissingFiles {
     if (!ExistsPath(image_path)) {
       return "its image " + image_path + " is missing";
     }
-    const std::string map_path =
-        plan_->MapPath(MapKind::kDepth, view, Pass::kPhotometric, 0);
-    if (options_.geom_consistency && computed_.count(view) == 0 &&
-        !ExistsPath(map_path)) {
-      return "the map " + map_path +
-             " is missing and the view is not in the list of views to compute";
-    }
     return "";
   }
 
@@ -102,16 +88,54 @@ class MissingFiles {
                     "--PatchMatchStereo.allow_missing_files 1");
     }
     PrintWarning(what + "; it is left out");
-    has_dropped_ = true;
   }
 
   const std::string& Name(int view) const { return plan_->View(view, 0).name; }
 
   const PatchMatchOptions& options_;
   StereoPlan* const plan_;
-  std::unordered_set<int> computed_;
-  bool has_dropped_ = false;
 };
+
+// The geometric pass of a view needs maps of its sources. Those that are not
+// listed and have none are computed with the views that they are sources of,
+// and with the other sources of these.
+void AddHelpers(const PatchMatchOptions& options, StereoPlan* plan) {
+  plan->num_results = plan->problems.size();
+  if (!options.geom_consistency) {
+    return;
+  }
+  std::set<int> listed;
+  size_t max_num_sources = 0;
+  for (const ViewIndices& problem : plan->problems) {
+    listed.insert(problem.reference);
+    max_num_sources = std::max(max_num_sources, problem.sources.size());
+  }
+  std::map<int, std::vector<int>> helpers;
+  for (const ViewIndices& problem : plan->problems) {
+    for (const int source : problem.sources) {
+      if (listed.count(source) == 0 &&
+          !ExistsPath(
+              plan->MapPath(MapKind::kDepth, source, Pass::kPhotometric, 0))) {
+        std::vector<int>& around = helpers[source];
+        around.push_back(problem.reference);
+        around.insert(around.end(), problem.sources.begin(),
+                      problem.sources.end());
+      }
+    }
+  }
+  for (const auto& [helper, around] : helpers) {
+    ViewIndices problem;
+    problem.reference = helper;
+    std::set<int> used = {helper};
+    for (const int view : around) {
+      if (problem.sources.size() < max_num_sources &&
+          used.insert(view).second) {
+        problem.sources.push_back(view);
+      }
+    }
+    plan->problems.push_back(problem);
+  }
+}
 
 void CheckDepthRanges(const PatchMatchOptions& options,
                       const StereoPlan& plan) {
@@ -201,6 +225,29 @@ std::vector<PassPlan> Passes(const PatchMatchOptions& options,
   return passes;
 }
 
+// A filter that asks for more views than there are leaves nothing.
+void WarnOfFilter(const PatchMatchOptions& options, const StereoPlan& plan) {
+  const auto num_needed =
+      static_cast<size_t>(std::max(options.filter_min_num_consistent, 0));
+  std::vector<std::string> names;
+  for (size_t i = 0; i < plan.num_results; ++i) {
+    if (plan.problems[i].sources.size() < num_needed) {
+      names.push_back(plan.View(plan.problems[i].reference, 0).name);
+    }
+  }
+  if (options.filter && !names.empty()) {
+    PrintWarning(std::to_string(names.size()) + " of " +
+                 std::to_string(plan.num_results) + " views, such as " +
+                 names[0] +
+                 ", have fewer source images than "
+                 "filter_min_num_consistent (" +
+                 std::to_string(options.filter_min_num_consistent) +
+                 "), so that nothing is left of their maps; lower "
+                 "--PatchMatchStereo.filter_min_num_consistent, and "
+                 "--StereoFusion.min_num_pixels with it");
+  }
+}
+
 // How a pass comes to values that nobody gave, if differences name such.
 std::string PassLimits(const std::string& differences, bool is_final) {
   if (is_final && differences.find("num_iterations") != std::string::npos) {
@@ -277,9 +324,11 @@ bool IsDone(const StereoPlan& plan, const PassPlan& pass, int view) {
 void CheckMaps(StereoPlan* plan) {
   const bool is_geometric = plan->passes.back().pass == Pass::kGeometric;
   for (PassPlan& pass : plan->passes) {
-    for (const ViewIndices& problem : plan->problems) {
+    for (size_t i = 0; i < plan->problems.size(); ++i) {
+      const bool is_result = &pass == &plan->passes.back();
       pass.is_done.push_back(pass.has_maps &&
-                             IsDone(*plan, pass, problem.reference));
+                             !(is_result && plan->IsHelper(i)) &&
+                             IsDone(*plan, pass, plan->problems[i].reference));
     }
   }
   for (const ViewIndices& problem : plan->problems) {
@@ -301,7 +350,9 @@ void FindNeeded(StereoPlan* plan) {
     problem_of[plan->problems[i].reference] = static_cast<int>(i);
   }
   for (PassPlan& pass : plan->passes) {
-    pass.is_needed.assign(num_problems, pass.level == 0);
+    for (size_t i = 0; i < num_problems; ++i) {
+      pass.is_needed.push_back(pass.level == 0 && !plan->IsHelper(i));
+    }
   }
   for (size_t p = plan->passes.size() - 1; p > 0; --p) {
     const PassPlan& pass = plan->passes[p];
@@ -320,9 +371,91 @@ void FindNeeded(StereoPlan* plan) {
   }
 }
 
+// What the maps of each problem are made from. views: at the size of their
+// photographs.
+ViewsRecord CurrentInputs(const StereoPlan& plan,
+                          const std::vector<SceneView>& views) {
+  std::map<int, std::string> photos;
+  const auto describe = [&](int view) {
+    if (photos.count(view) == 0) {
+      photos[view] = DescribePhoto(views[view].image_path);
+    }
+  };
+  ViewsRecord inputs;
+  for (const ViewIndices& problem : plan.problems) {
+    describe(problem.reference);
+    std::for_each(problem.sources.begin(), problem.sources.end(), describe);
+    inputs[views[problem.reference].name] =
+        DescribeInputs(views, problem.reference, problem.sources, photos);
+  }
+  return inputs;
+}
+
+// Maps of a pass that are made from something else than this run's.
+struct StaleMaps {
+  std::vector<std::string> names;
+  // Of the first one.
+  std::string difference;
+  // Whether it is not known what others are made from.
+  bool has_unknown = false;
+};
+
+StaleMaps FindStaleMaps(const StereoPlan& plan, const PassPlan& pass,
+                        const ViewsRecord& recorded,
+                        const ViewsRecord& current) {
+  StaleMaps stale;
+  for (const ViewIndices& problem : plan.problems) {
+    const std::string& name = plan.View(problem.reference, 0).name;
+    if (!ExistsPath(plan.MapPath(MapKind::kDepth, problem.reference, pass.pass,
+                                 pass.level))) {
+      continue;
+    }
+    const auto found = recorded.find(name);
+    if (found == recorded.end()) {
+      stale.has_unknown = true;
+      continue;
+    }
+    const std::string difference =
+        DescribeDifference(found->second, current.at(name));
+    if (!difference.empty()) {
+      if (stale.names.empty()) {
+        stale.difference = difference;
+      }
+      stale.names.push_back(name);
+    }
+  }
+  return stale;
+}
+
+// Compares what the maps of a pass were made from with what there is now.
+void CheckInputs(const StereoPlan& plan, const PassPlan& pass,
+                 const ViewsRecord& current) {
+  const std::string path = plan.location.ViewsRecordPath(pass.pass, pass.level);
+  const StaleMaps stale =
+      FindStaleMaps(plan, pass, ReadViewsRecord(path), current);
+  if (!stale.names.empty()) {
+    throw Failure(
+        std::string("The ") + PassName(pass.pass) + " maps of " +
+        std::to_string(stale.names.size()) + " views, such as " +
+        stale.names[0] + ", in " + plan.location.StereoPath() +
+        " were made from " + stale.difference +
+        " than there are now; remove their *.photometric.bin and "
+        "*.geometric.bin to have them computed again, name another workspace, "
+        "or remove " +
+        path + " to keep these maps");
+  }
+  if (stale.has_unknown) {
+    PrintWarning(
+        std::string("It is not known which poses and photographs the ") +
+        PassName(pass.pass) + " maps in " + plan.location.StereoPath() +
+        " were made from; they are kept");
+  }
+}
+
 // Whether the maps of a coarse level can be gone on with: another run, with
 // other options or photographs, may have left them when it was stopped.
-bool IsUsable(const StereoPlan& plan, const PassPlan& pass) {
+bool IsUsable(const StereoPlan& plan, const PassPlan& pass,
+              const ViewsRecord& inputs) {
   try {
     const std::optional<OptionValues> recorded =
         ReadOptionsRecord(plan.location.RecordPath(pass.pass, pass.level));
@@ -332,7 +465,11 @@ bool IsUsable(const StereoPlan& plan, const PassPlan& pass) {
     for (const ViewIndices& problem : plan.problems) {
       IsDone(plan, pass, problem.reference);
     }
-    return true;
+    const StaleMaps stale = FindStaleMaps(
+        plan, pass,
+        ReadViewsRecord(plan.location.ViewsRecordPath(pass.pass, pass.level)),
+        inputs);
+    return stale.names.empty() && !stale.has_unknown;
   } catch (const Failure&) {
     return false;
   }
@@ -340,11 +477,12 @@ bool IsUsable(const StereoPlan& plan, const PassPlan& pass) {
 
 // Compares the maps that are there with what this run would make. Those of
 // coarse levels are nobody's result: all go if one does not fit.
-void CheckRecords(StereoPlan* plan) {
+void CheckRecords(const ViewsRecord& inputs, StereoPlan* plan) {
   for (const PassPlan& pass : plan->passes) {
     if (pass.has_maps && pass.level == 0) {
       CheckRecord(*plan, pass);
-    } else if (pass.has_maps && !IsUsable(*plan, pass)) {
+      CheckInputs(*plan, pass, inputs);
+    } else if (pass.has_maps && !IsUsable(*plan, pass, inputs)) {
       plan->drops_levels = true;
     }
   }
@@ -358,18 +496,50 @@ void CheckRecords(StereoPlan* plan) {
 // Pictures show a computation, not its maps.
 void WarnOfMissingPictures(const StereoPlan& plan) {
   const PassPlan& pass = plan.passes.back();
-  if (pass.writes_pictures && pass.NumDone() > 0) {
-    PrintWarning(std::to_string(pass.NumDone()) + " of " +
-                 std::to_string(plan.problems.size()) +
+  if (pass.writes_pictures && plan.NumDone() > 0) {
+    PrintWarning(std::to_string(plan.NumDone()) + " of " +
+                 std::to_string(plan.num_results) +
                  " views have their maps already, so that this run draws no "
                  "pictures of them; to get some, remove their *." +
                  PassName(pass.pass) + ".bin");
   }
 }
 
+void UpdateViewsRecords(const ViewsRecord& inputs, StereoPlan* plan) {
+  for (PassPlan& pass : plan->passes) {
+    if (pass.has_maps) {
+      pass.views_record = ReadViewsRecord(
+          plan->location.ViewsRecordPath(pass.pass, pass.level));
+    }
+    for (size_t i = 0; i < plan->problems.size(); ++i) {
+      if (pass.Computes(i)) {
+        const std::string& name =
+            plan->View(plan->problems[i].reference, 0).name;
+        pass.views_record[name] = inputs.at(name);
+      }
+    }
+  }
+}
+
+void PrintViews(const StereoPlan& plan) {
+  std::cout << "Configuration has " << plan.num_results << " views.";
+  const size_t num_helpers = plan.problems.size() - plan.num_results;
+  if (num_helpers > 0) {
+    std::cout << " " << num_helpers
+              << " further ones are their sources and get photometric maps.";
+  }
+  std::cout << std::endl;
+  if (plan.NumDone() == static_cast<int>(plan.num_results)) {
+    std::cout << "All of them have their maps already: there is nothing to do. "
+                 "To have maps computed again, remove them from "
+              << plan.location.StereoPath() << "." << std::endl;
+  }
+}
+
 }  // namespace
 
-int PassPlan::NumDone() const {
+int StereoPlan::NumDone() const {
+  const std::vector<bool>& is_done = passes.back().is_done;
   return static_cast<int>(std::count(is_done.begin(), is_done.end(), true));
 }
 
@@ -390,17 +560,28 @@ StereoPlan MakeStereoPlan(const PatchMatchOptions& options,
   for (int level = 1; level < num_levels; ++level) {
     plan.views.push_back(SceneViews(model, options.max_image_size, level));
   }
-  plan.problems = ResolveProblems(ReadProblemConfig(location.ConfigPath()),
-                                  model, options.min_triangulation_angle);
+  std::set<std::string> names;
+  for (const SceneView& view : plan.views[0]) {
+    names.insert(view.name);
+  }
+  const std::vector<ViewConfig> config = ReadProblemConfig(
+      location.ConfigPath(),
+      [&names](const std::string& name) { return names.count(name) > 0; });
+  plan.problems =
+      ResolveProblems(config, model, options.min_triangulation_angle);
   MissingFiles::Drop(options, &plan);
+  AddHelpers(options, &plan);
   CheckDepthRanges(options, plan);
+  WarnOfFilter(options, plan);
   plan.passes = Passes(options, plan);
-  CheckRecords(&plan);
+  const ViewsRecord inputs =
+      CurrentInputs(plan, SceneViews(model, /* max_image_size */ -1));
+  CheckRecords(inputs, &plan);
   CheckMaps(&plan);
   FindNeeded(&plan);
+  UpdateViewsRecords(inputs, &plan);
   WarnOfMissingPictures(plan);
-  std::cout << "Configuration has " << plan.problems.size() << " views."
-            << std::endl;
+  PrintViews(plan);
   return plan;
 }
 

@@ -10,6 +10,7 @@
 #include "src/colmap/pass.h"
 #include "src/colmap/problem_config.h"
 #include "src/colmap/views.h"
+#include "src/colmap/views_record.h"
 #include "src/colmap/workspace.h"
 
 namespace tapa {
@@ -31,11 +32,12 @@ struct PassPlan {
   // whatever view: the record is about all maps beside it.
   OptionValues record;
   bool has_maps = false;
+  // What the maps beside it are made from, with those that the pass computes.
+  ViewsRecord views_record;
   // What it writes besides depth and normal maps.
   bool writes_graphs = false;
   bool writes_pictures = false;
 
-  int NumDone() const;
   bool Computes(size_t problem) const {
     return is_needed[problem] && !is_done[problem];
   }
@@ -48,13 +50,19 @@ struct StereoPlan {
   WorkspaceLocation location;
   // All images of the model, at each level.
   std::vector<std::vector<SceneView>> views;
-  // Indices into them.
+  // Indices into them: of the views whose maps are the result, then of helpers,
+  // sources that are not among those and have no map. The geometric pass of the
+  // others needs their photometric maps.
   std::vector<ViewIndices> problems;
+  size_t num_results = 0;
   // One after the other; the maps of the last one are the result.
   std::vector<PassPlan> passes;
   // Whether maps of coarse levels are there that this run cannot go on with.
   bool drops_levels = false;
 
+  bool IsHelper(size_t problem) const { return problem >= num_results; }
+  // Number of views whose result is there.
+  int NumDone() const;
   const SceneView& View(int view, int level) const {
     return views[level][view];
   }

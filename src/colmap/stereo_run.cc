@@ -45,6 +45,25 @@ double TotalWork(const StereoPlan& plan) {
   return total;
 }
 
+// Takes out of the result what is beyond a range of depths that was asked for.
+void DropOutside(const PassPlan& pass, Estimate* estimate) {
+  const double min = pass.options.depth_min;
+  const double max = pass.options.depth_max;
+  if (min < 0 || !pass.options.filter) {
+    return;
+  }
+  const size_t num_pixels = estimate->depth.size();
+  const size_t mask_bytes = estimate->consistent.size() / num_pixels;
+  for (size_t i = 0; i < num_pixels; ++i) {
+    float& depth = estimate->depth.data()[i];
+    if (depth < min || depth > max) {
+      depth = 0;
+      estimate->normal.data()[i] = {0, 0, 0};
+      std::fill_n(estimate->consistent.begin() + i * mask_bytes, mask_bytes, 0);
+    }
+  }
+}
+
 // Of the pictures of a view, named as its photograph.
 std::string PictureFolder(const PassPlan& pass, const SceneView& view) {
   return colmap::JoinPaths(pass.options.tapa_debug, view.name);
@@ -59,7 +78,7 @@ StereoRun::StereoRun(StereoPlan plan, std::vector<int> workers,
       stopped_(std::move(stopped)),
       reader_(plan_),
       progress_(TotalWork(plan_)),
-      num_done_(plan_.passes.back().NumDone()) {}
+      num_done_(plan_.NumDone()) {}
 
 bool StereoRun::Run() {
   PrepareFolders();
@@ -137,6 +156,10 @@ bool StereoRun::ComputePass(const PassPlan& pass) {
     WriteOptionsRecord(plan_.location.RecordPath(pass.pass, pass.level),
                        pass.record);
   }
+  if (Computes(pass)) {
+    WriteViewsRecord(plan_.location.ViewsRecordPath(pass.pass, pass.level),
+                     pass.views_record);
+  }
   std::atomic<size_t> next(0);
   std::exception_ptr error;
   const auto work = [&](int device) {
@@ -188,11 +211,11 @@ bool StereoRun::ComputeProblem(size_t number, const PassPlan& pass,
   }
   const ViewIndices& problem = plan_.problems[number];
   const SceneView& view = plan_.View(problem.reference, pass.level);
-  const int progress_view =
-      progress_.BeginView(pass.pass, pass.level,
-                          std::to_string(number + 1) + "/" +
-                              std::to_string(NumViews()) + " " + view.name,
-                          Megapixels(view), Work(pass, view));
+  const int progress_view = progress_.BeginView(
+      pass.pass, pass.level,
+      std::to_string(number + 1) + "/" + std::to_string(plan_.problems.size()) +
+          " " + view.name,
+      Megapixels(view), Work(pass, view));
   if (!ComputeView({pass, problem, view, progress_view}, device)) {
     return false;
   }
@@ -257,7 +280,11 @@ bool StereoRun::ComputeViewOn(int device, const Task& task) {
                   " MB of memory; lower --PatchMatchStereo.max_image_size or "
                   "cache_size");
   }
-  return estimate && WriteView(task, *estimate, *input, record);
+  if (!estimate) {
+    return false;
+  }
+  DropOutside(task.pass, &*estimate);
+  return WriteView(task, *estimate, *input, record);
 }
 
 bool StereoRun::WriteView(const Task& task, const Estimate& estimate,

@@ -32,7 +32,7 @@ class StereoRun {
 
   // Number of views whose final maps are there, and of all views.
   int NumDone() const { return num_done_; }
-  int NumViews() const { return static_cast<int>(plan_.problems.size()); }
+  int NumViews() const { return static_cast<int>(plan_.num_results); }
 
  private:
   // A view to compute in a pass.

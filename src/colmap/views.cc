@@ -31,7 +31,7 @@ Camera ToCamera(const colmap::mvs::Image& image) {
 
 // Whether the library has said, since this was cleared, that image data end
 // too early. It fills the rest with grey and calls it a success.
-bool is_truncated = false;
+thread_local bool is_truncated = false;
 
 void NoteMessage(FREE_IMAGE_FORMAT, const char* message) {
   // "Premature end of JPEG file", "Corrupt JPEG data: premature end of ...".
@@ -41,31 +41,9 @@ void NoteMessage(FREE_IMAGE_FORMAT, const char* message) {
   }
 }
 
-// Reads the photograph of a view at the size that stereo works at.
-colmap::Bitmap ReadBitmap(const SceneView& view, bool in_color) {
-  is_truncated = false;
-  FreeImage_SetOutputMessage(&NoteMessage);
-  colmap::Bitmap bitmap;
-  bool is_read = bitmap.Read(view.image_path, in_color);
-  if (in_color && !is_read && bitmap.Read(view.image_path, false)) {
-    // FreeImage does not turn every kind of grey into colour, such as 16 bits.
-    bitmap = bitmap.CloneAsRGB();
-    is_read = true;
-  }
-  FreeImage_SetOutputMessage(nullptr);
-  if (!is_read || is_truncated) {
-    throw Failure("The image " + view.image_path +
-                  " cannot be read; is it there, and is it a whole image?");
-  }
-  if (bitmap.Width() != view.photo_width ||
-      bitmap.Height() != view.photo_height) {
-    throw Failure(
-        "The image " + view.image_path + " has " +
-        std::to_string(bitmap.Width()) + "x" + std::to_string(bitmap.Height()) +
-        " pixels, but its camera has " + std::to_string(view.photo_width) +
-        "x" + std::to_string(view.photo_height) +
-        "; make both the same, as image_undistorter does");
-  }
+colmap::Bitmap ReadScaled(const SceneView& view, bool in_color) {
+  colmap::Bitmap bitmap = ReadBitmap(view.image_path, in_color,
+                                     view.photo_width, view.photo_height);
   if (view.width != view.photo_width || view.height != view.photo_height) {
     bitmap.Rescale(view.width, view.height);
   }
@@ -102,9 +80,39 @@ std::vector<SceneView> SceneViews(const colmap::mvs::Model& model,
   return views;
 }
 
+colmap::Bitmap ReadBitmap(const std::string& path, bool in_color) {
+  is_truncated = false;
+  FreeImage_SetOutputMessage(&NoteMessage);
+  colmap::Bitmap bitmap;
+  if (!bitmap.Read(path, in_color) || is_truncated) {
+    throw Failure("The image " + path +
+                  " cannot be read; is it there, and is it a whole image?");
+  }
+  return bitmap;
+}
+
+colmap::Bitmap ReadBitmap(const std::string& path, bool in_color, int width,
+                          int height) {
+  colmap::Bitmap bitmap = ReadBitmap(path, in_color);
+  CheckPhotoSize(path, bitmap.Width(), bitmap.Height(), width, height);
+  return bitmap;
+}
+
+void CheckPhotoSize(const std::string& path, size_t width, size_t height,
+                    size_t camera_width, size_t camera_height) {
+  if (width != camera_width || height != camera_height) {
+    throw Failure("The image " + path + " has " + std::to_string(width) + "x" +
+                  std::to_string(height) + " pixels, but its camera has " +
+                  std::to_string(camera_width) + "x" +
+                  std::to_string(camera_height) +
+                  "; take the photograph that the model was made from, or "
+                  "scale it to that size");
+  }
+}
+
 Map<uint8_t> ReadPhoto(const SceneView& view) {
   const std::vector<uint8_t> pixels =
-      ReadBitmap(view, /* in_color */ false).ConvertToRowMajorArray();
+      ReadScaled(view, /* in_color */ false).ConvertToRowMajorArray();
   Map<uint8_t> image(view.width, view.height);
   std::memcpy(image.data(), pixels.data(), image.size());
   return image;
@@ -113,7 +121,7 @@ Map<uint8_t> ReadPhoto(const SceneView& view) {
 Map<Rgb> ReadColorPhoto(const SceneView& view) {
   // The channels are in the order of FreeImage.
   const std::vector<uint8_t> channels =
-      ReadBitmap(view, /* in_color */ true).ConvertToRowMajorArray();
+      ReadScaled(view, /* in_color */ true).ConvertToRowMajorArray();
   Map<Rgb> image(view.width, view.height);
   for (size_t i = 0; i < image.size(); ++i) {
     const uint8_t* pixel = &channels[3 * i];

@@ -7,6 +7,7 @@
 #include "mvs/model.h"
 #include "src/base/map.h"
 #include "src/mvs/view.h"
+#include "util/bitmap.h"
 
 namespace tapa {
 
@@ -33,9 +34,18 @@ struct SceneView {
 std::vector<SceneView> SceneViews(const colmap::mvs::Model& model,
                                   int max_image_size, int level = 0);
 
+// Reads a photograph. Throws Failure if it is missing or damaged, or, where a
+// size is given, if it has another than that of its camera.
+colmap::Bitmap ReadBitmap(const std::string& path, bool in_color);
+colmap::Bitmap ReadBitmap(const std::string& path, bool in_color, int width,
+                          int height);
+
+// Throws Failure that says what to do, if the sizes differ.
+void CheckPhotoSize(const std::string& path, size_t width, size_t height,
+                    size_t camera_width, size_t camera_height);
+
 // Read the photograph, in grey or in colour, at the size that stereo works at.
-// Throw Failure if it is missing, damaged, or not of the size that its camera
-// has. Not to be called from two threads at a time.
+// Throw Failure as above.
 Map<uint8_t> ReadPhoto(const SceneView& view);
 Map<Rgb> ReadColorPhoto(const SceneView& view);
 

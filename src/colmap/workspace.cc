@@ -92,6 +92,11 @@ std::string WorkspaceLocation::RecordPath(Pass pass, int level) const {
                            std::string("options.") + PassName(pass) + ".txt");
 }
 
+std::string WorkspaceLocation::ViewsRecordPath(Pass pass, int level) const {
+  return colmap::JoinPaths(LevelPath(level),
+                           std::string("views.") + PassName(pass) + ".txt");
+}
+
 void RemoveLevels(const WorkspaceLocation& location) {
   std::error_code error;
   std::filesystem::remove_all(location.LevelsPath(), error);
@@ -101,26 +106,38 @@ void RemoveLevels(const WorkspaceLocation& location) {
   }
 }
 
-colmap::mvs::Model ReadWorkspace(const WorkspaceLocation& location) {
+namespace {
+
+colmap::mvs::Workspace OpenWorkspace(const WorkspaceLocation& location) {
   if (!colmap::ExistsDir(location.path)) {
     throw Failure("There is no workspace folder " + location.path +
                   "; image_undistorter makes one");
   }
-  const bool is_pmvs = IsPmvs(location);
-  if (is_pmvs) {
+  if (IsPmvs(location)) {
     CheckPmvsWorkspace(location);
   } else {
     CheckColmapWorkspace(location);
   }
 
-  // COLMAP's readers end the program where they find nonsense.
   const FatalErrors fatal_errors("Cannot read the workspace " + location.path);
   colmap::mvs::Workspace::Options options;
   options.workspace_path = location.path;
   options.workspace_format = location.format;
   options.stereo_folder = colmap::GetPathBaseName(location.StereoPath());
-  const colmap::mvs::Workspace workspace(options);
-  if (is_pmvs) {
+  return colmap::mvs::Workspace(options);
+}
+
+}  // namespace
+
+colmap::mvs::Model ReadModel(const WorkspaceLocation& location) {
+  return OpenWorkspace(location).GetModel();
+}
+
+colmap::mvs::Model ReadWorkspace(const WorkspaceLocation& location) {
+  const colmap::mvs::Workspace workspace = OpenWorkspace(location);
+  if (IsPmvs(location)) {
+    const FatalErrors fatal_errors("Cannot read the workspace " +
+                                   location.path);
     colmap::mvs::ImportPMVSWorkspace(workspace, location.pmvs_option_name);
   }
   return workspace.GetModel();

@@ -27,6 +27,8 @@ struct WorkspaceLocation {
                       int level) const;
   // Record of the options that made the maps of a pass (options_record.h).
   std::string RecordPath(Pass pass, int level) const;
+  // Record of what the maps of a pass were made from (views_record.h).
+  std::string ViewsRecordPath(Pass pass, int level) const;
   // Folder of the maps of all levels but level 0 (src/mvs/levels.h), which a
   // run removes at its end.
   std::string LevelsPath() const;
@@ -38,9 +40,12 @@ struct WorkspaceLocation {
 // Removes the folder of coarse levels, if there is one. Throws Failure.
 void RemoveLevels(const WorkspaceLocation& location);
 
-// Reads the sparse model, and makes the stereo folder of a PMVS workspace.
-// Throws Failure if parts of the workspace are missing; ends the program with
-// one line if the model's files are damaged.
+// Reads the sparse model. Throws Failure if parts of the workspace are missing
+// or damaged; ends the program with one line for what COLMAP itself finds
+// wrong.
+colmap::mvs::Model ReadModel(const WorkspaceLocation& location);
+
+// The same, and makes the stereo folder of a PMVS workspace.
 colmap::mvs::Model ReadWorkspace(const WorkspaceLocation& location);
 
 }  // namespace tapa

@@ -195,7 +195,9 @@ TEST(CheckOptions, DepthRange) {
   EXPECT_EQ(error_of(1, 1), "");
   EXPECT_EQ(error_of(0.5, 8), "");
   EXPECT_NE(error_of(2, 1), "");
-  EXPECT_NE(error_of(0, 1), "");
+  EXPECT_EQ(error_of(0, 1), "") << "no lower end";
+  EXPECT_NE(error_of(0, 0), "");
+  EXPECT_NE(error_of(0, HUGE_VAL), "");
   EXPECT_NE(error_of(-1, 1), "");
   EXPECT_NE(error_of(1, -1), "");
 }

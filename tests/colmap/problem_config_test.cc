@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <set>
 
 #include "src/base/failure.h"
 #include "tests/colmap/test_folder.h"
@@ -12,11 +13,15 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-std::vector<ViewConfig> Parse(const std::string& text) {
+// names: those of the model's images.
+std::vector<ViewConfig> Parse(const std::string& text,
+                              const std::set<std::string>& names = {}) {
   const TestFolder folder;
   const std::string path = folder.Path("patch-match.cfg");
   std::ofstream(path) << text;
-  return ReadProblemConfig(path);
+  return ReadProblemConfig(path, [&names](const std::string& name) {
+    return names.count(name) > 0;
+  });
 }
 
 TEST(ReadProblemConfig, ReadsAllKinds) {
@@ -56,7 +61,32 @@ TEST(ReadProblemConfig, RefusesNonsense) {
        }) {
     EXPECT_THROW(Parse(text), Failure) << text;
   }
-  EXPECT_THROW(ReadProblemConfig("/nowhere/patch-match.cfg"), Failure);
+  EXPECT_THROW(ReadProblemConfig("/nowhere/patch-match.cfg",
+                                 [](const std::string&) { return true; }),
+               Failure);
+}
+
+TEST(ReadProblemConfig, SkipsByteOrderMark) {
+  EXPECT_EQ(Parse("\xef\xbb\xbf"
+                  "a.jpg\r\n__all__\r\n")[0]
+                .reference,
+            "a.jpg");
+}
+
+TEST(ReadProblemConfig, KnowsNamesWithAnyCharacter) {
+  const auto config = Parse(
+      "#1.jpg\n"
+      "Hall, left; 2.jpg, b.jpg,  c.jpg; Hall, left.jpg\n"
+      "# a comment\n"
+      " c.jpg\n"
+      "#1.jpg,Hall, left; 2.jpg\n",
+      {"#1.jpg", "Hall, left; 2.jpg", "Hall, left.jpg", " c.jpg", "b.jpg"});
+  ASSERT_EQ(config.size(), 2);
+  EXPECT_EQ(config[0].reference, "#1.jpg");
+  EXPECT_EQ(config[0].source_names,
+            (Names{"Hall, left; 2.jpg", "b.jpg", " c.jpg", "Hall, left.jpg"}));
+  EXPECT_EQ(config[1].reference, " c.jpg");
+  EXPECT_EQ(config[1].source_names, (Names{"#1.jpg", "Hall, left; 2.jpg"}));
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 fails. The sparse model is given, as small images are not good for SIFT."""
 
 import os
+import shutil
 import unittest
 
 import tiny_workspace as tiny
@@ -70,6 +71,78 @@ class Automatic(tiny.TestCase):
         self.assertIn("There is no display", result.stdout)
         tiny.read_map(tiny.map_path(self.dense, self.names[0],
                                     which="photometric"))
+
+    def test_displays_that_are_not_there(self):
+        for display in ({"QT_QPA_PLATFORM": "offscreen"}, {"DISPLAY": ":99"},
+                        {"QT_QPA_PLATFORM": "none"}):
+            environment = {name: value for name, value in os.environ.items()
+                           if name not in ("DISPLAY", "WAYLAND_DISPLAY",
+                                           "QT_QPA_PLATFORM")}
+            result = self.reconstruct("low", ("--dense", "0"),
+                                      env={**environment, **display})
+            self.assertEqual(result.returncode, 0, result.stdout)
+            result = tiny.run([tiny.COLMAP, "feature_extractor",
+                               "--database_path", self.path("database.db"),
+                               "--image_path", self.path("photos")],
+                              env={**environment, **display})
+            self.assertEqual(result.returncode, 0, result.stdout)
+
+    def test_goes_on_where_it_was_stopped(self):
+        self.assert_success(self.reconstruct("low"))
+        outputs = {name: os.path.join(self.dense, name)
+                   for name in ("fused.ply", "meshed-poisson.ply",
+                                "stereo/fusion.cfg")}
+        sizes = {name: os.path.getsize(path) for name, path in outputs.items()}
+        # While it meshed, fused (as versions before left it) and undistorted.
+        for name in outputs:
+            os.remove(outputs["meshed-poisson.ply"])
+            if name == "fused.ply":
+                os.truncate(outputs[name], sizes[name] // 2)
+            elif os.path.exists(outputs[name]):
+                os.remove(outputs[name])
+            self.assert_success(self.reconstruct("low"))
+            for output, path in outputs.items():
+                self.assertGreater(os.path.getsize(path), sizes[output] // 2)
+        self.assertEqual([], [name for name in os.listdir(self.dense)
+                              if ".part" in name])
+
+    def test_nothing_can_be_done(self):
+        shutil.rmtree(self.path("out", "sparse"))
+        self.assert_one_error(
+            self.reconstruct("low", ("--use_gpu", "0", "--sparse", "0")),
+            "no camera poses", "--sparse 0")
+        for name in self.names:
+            tiny.write_png(self.path("photos", name), 96, 64,
+                           bytes([128] * 96 * 64))
+        shutil.rmtree(self.path("out"))
+        os.mkdir(self.path("out"))
+        self.assert_one_error(self.reconstruct("low"), "overlap")
+        for name in self.names:
+            with open(self.path("photos", name), "w") as file:
+                file.write("This is no image.\n")
+        self.assert_one_error(self.reconstruct("low"), "photos")
+
+    def test_other_photographs_and_files(self):
+        with open(self.path("photos", ".DS_Store"), "wb") as file:
+            file.write(bytes(range(256)))
+        with open(self.path("photos", "._view0.png"), "wb") as file:
+            file.write(bytes(range(256)))
+        self.assert_success(self.reconstruct("low"))
+        os.replace(self.path("photos", "view0.png"),
+                   self.path("photos", "view1.png"))
+        result = self.reconstruct("low")
+        self.assert_success(result)
+        self.assertRegex(result.stdout, "WARNING: 1 photographs .*view1.png.*"
+                                        "--workspace_path")
+
+    def test_workspace_among_the_photographs(self):
+        os.rename(self.path("out"), self.path("photos", "out"))
+        os.symlink(self.path("photos", "out"), self.path("out"))
+        for _ in range(2):
+            self.assert_success(self.reconstruct("low"))
+        with open(self.path("out", "photographs.txt")) as file:
+            self.assertEqual(sorted(line.split()[1] for line in file),
+                             self.names)
 
     def num_points(self, path):
         with open(path, "rb") as file:

@@ -11,18 +11,6 @@ import unittest
 import tiny_workspace as tiny
 
 
-def read_cloud(path):
-    """Names of the properties, and a tuple of values per point."""
-    with open(path, "rb") as file:
-        header, data = file.read().split(b"end_header\n", 1)
-    lines = header.decode().split("\n")
-    properties = [line.split()[1:] for line in lines if line.startswith("property")]
-    count = int([line for line in lines if line.startswith("element")][0].split()[2])
-    layout = "<" + "".join({"float": "f", "uchar": "B"}[kind] for kind, _ in properties)
-    assert len(data) == count * struct.calcsize(layout), path
-    return [name for _, name in properties], list(struct.iter_unpack(layout, data))
-
-
 def read_visibility(path):
     with open(path, "rb") as file:
         data = file.read()
@@ -50,11 +38,11 @@ class Fusion(tiny.TestCase):
 
     def points(self, *arguments):
         self.assert_success(self.fuse(*arguments))
-        return read_cloud(self.path("fused.ply"))[1]
+        return tiny.read_cloud(self.path("fused.ply"))[1]
 
     def test_points_visibility_and_confidence(self):
         self.assert_success(self.fuse())
-        names, points = read_cloud(self.path("fused.ply"))
+        names, points = tiny.read_cloud(self.path("fused.ply"))
         self.assertEqual(names, ["x", "y", "z", "nx", "ny", "nz", "red", "green", "blue",
                                  "confidence"])
         self.assertGreater(len(points), tiny.WIDTH * tiny.HEIGHT // 2)

@@ -216,15 +216,16 @@ def write_true_maps(workspace, name, index, width, height):
     write_map(map_path(workspace, name, "normal_maps"), width, height, normals)
 
 
-def read_points(path):
-    """x, y, z and red of the points that fusion wrote."""
+def read_cloud(path):
+    """Names of the properties that fusion wrote, and a tuple of values per point."""
     with open(path, "rb") as file:
         header, data = file.read().split(b"end_header\n", 1)
-    names = re.findall(rb"property (\w+) (\w+)", header)
-    assert [name for _, name in names] == [
-        b"x", b"y", b"z", b"nx", b"ny", b"nz", b"red", b"green", b"blue"], header
-    return [(x, y, z, red) for x, y, z, _, _, _, red, _, _
-            in struct.iter_unpack("<6f3B", data)]
+    properties = re.findall(r"property (\w+) (\w+)", header.decode())
+    count = int(re.search(rb"element vertex (\d+)", header)[1])
+    layout = "<" + "".join({"double": "d", "float": "f", "uchar": "B"}[kind]
+                           for kind, _ in properties)
+    assert len(data) == count * struct.calcsize(layout), path
+    return [name for _, name in properties], list(struct.iter_unpack(layout, data))
 
 
 def depth_errors(workspace, name, index, **where):

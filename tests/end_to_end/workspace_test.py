@@ -59,10 +59,10 @@ class Colmap(tiny.TestCase):
             "--output_path", self.path("fused.ply"),
             "--StereoFusion.agreement", "0", "--StereoFusion.min_num_pixels",
             "1"]))
-        points = tiny.read_points(self.path("fused.ply"))
+        _, points = tiny.read_cloud(self.path("fused.ply"))
         self.assertEqual(len(points), 32 * 21)
         photo = tiny.render(0, tiny.WIDTH, tiny.HEIGHT)
-        for x, y, z, color in points:
+        for x, y, z, _, _, _, color, *_ in points:
             self.assertAlmostEqual(z, 4 + x / 4, delta=1e-4)
             u, v = (tiny.FOCAL * a / z + size / 2
                     for a, size in ((x, tiny.WIDTH), (y, tiny.HEIGHT)))

@@ -240,3 +240,15 @@ class FilesTest(TestCase):
         for name, found in (("a.jpg", "gt/a.png"), ("rig/a.jpg", "gt/a.png"),
                             ("rig/b.jpg", "gt/rig/b.bin"), ("b.jpg", "gt/b.png"), ("c.jpg", "")):
             self.assertEqual(depth_maps.find(self.path("gt"), name), found and self.path(found))
+
+    def test_truth_that_could_be_that_of_two(self):
+        self.write("gt/a.png")
+        for names in (["a.jpg", "a.tif"], ["left/a.jpg", "right/a.jpg"]):
+            with self.assertRaisesRegex(Failure, f"gt/a.png .*{names[0]} and {names[1]}"):
+                depth_maps.find_all(self.path("gt"), names)
+        self.write("gt/a.tif.bin")
+        self.write("gt/right/a.jpg.png")
+        names = ["a.jpg", "a.tif", "right/a.jpg"]
+        self.assertEqual(depth_maps.find_all(self.path("gt"), names), {
+            name: self.path("gt", file)
+            for name, file in zip(names, ("a.png", "a.tif.bin", "right/a.jpg.png"))})

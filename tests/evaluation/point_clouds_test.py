@@ -55,6 +55,15 @@ class PlyTest(TestCase):
         for kind in ORDERS:
             self.expect(ply(kind, head, rows), [[-300, 0.5, -0.125], [-600, 1, -0.25]])
 
+    def test_far_from_the_origin(self):
+        doubles = "property double x\nproperty double y\nproperty double z\n"
+        row = [("f8", value) for value in (500000.25, 5200000.125, 200.0625)]
+        for kind in ORDERS:
+            found, _ = self.read_bytes(ply(kind, "element vertex 1\n" + doubles, [row]))
+            np.testing.assert_array_equal(found, [[value for _, value in row]])
+            point_clouds.write_ply(self.path("again.ply"), found)
+            np.testing.assert_array_equal(point_clouds.read_ply(self.path("again.ply"))[0], found)
+
     def test_lists_and_other_elements(self):
         rows = [[("u1", 3), ("i4", 0), ("i4", 1), ("i4", 0)], [("u1", 0)],
                 [("f8", 1.0), ("f8", 2.0)],

@@ -1,0 +1,66 @@
+"""Names of the photographs that a sparse model of COLMAP has.
+
+As a program it prints those of DATA/sparse that are in DATA/images, a line each.
+"""
+
+import os
+import struct
+import sys
+
+from . import command_line, files
+from .processes import Failure
+
+
+def read_names(folder):
+    """Names in the text or binary model in a folder, in any order; None where there is none."""
+    binary, text = (os.path.join(folder, "images" + end) for end in (".bin", ".txt"))
+    if os.path.exists(binary):
+        return _read_binary(binary)
+    if os.path.exists(text):
+        lines = files.read_bytes(text).decode("utf-8-sig", errors="surrogateescape").split("\n")
+        lines = [line.rstrip("\r") for line in lines if not line.startswith("#")]
+        # A line of observations follows each photograph's own.
+        return [_name_in(line) for line in lines[0::2] if line.strip()]
+    return None
+
+
+def _name_in(line):
+    """The rest of a line after nine numbers, and a blank."""
+    fields = line.split(" ", 9)
+    if len(fields) == 10 and all(fields[:9]):
+        return fields[9].rstrip()
+    return line.split(maxsplit=9)[-1].strip()
+
+
+def _read_binary(path):
+    data = files.read_bytes(path)
+    names = []
+    try:
+        count, at = struct.unpack_from("<Q", data)[0], 8
+        for _ in range(count):
+            begin = at + 64
+            end = data.index(b"\0", begin)
+            names.append(os.fsdecode(data[begin:end]))
+            at = end + 9 + 24 * struct.unpack_from("<Q", data, end + 1)[0]
+    except (struct.error, ValueError) as error:
+        raise Failure(f"{path} is damaged") from error
+    return names
+
+
+def photographs(data):
+    """Names of the files in DATA/images that the model has; all, where there is no model."""
+    names = files.names_below(os.path.join(data, "images"))
+    known = read_names(os.path.join(data, "sparse"))
+    known = None if known is None else set(known)
+    return [name for name in names if known is None or name in known]
+
+
+def main(words=None):
+    data = (words or sys.argv[1:])[0]
+    for name in photographs(data):
+        sys.stdout.buffer.write(os.fsencode(name) + b"\n")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(command_line.run(main))
