@@ -46,11 +46,12 @@ class Scenes(unittest.TestCase):
         self.assertEqual(rig.archives()[2:], ["electro_rig.7z", "electro_rig_depth.7z"])
 
     def test_fusion_of_the_paper(self):
-        errors = {name: track.fusion[1] for name, track in scenes.TRACKS.items()}
-        self.assertEqual(errors, {"high": "1", "low": "0.5"})
-        for track in scenes.TRACKS.values():
-            self.assertEqual(track.fusion[3], "20")
-
+        for name, error in (("high", "1"), ("low", "0.5")):
+            words = scenes.TRACKS[name].fusion
+            options = {key.removeprefix("--StereoFusion."): value
+                       for key, value in zip(words[::2], words[1::2])}
+            self.assertEqual(options, {"agreement": "0", "max_reproj_error": error,
+                                       "max_normal_error": "20"})
     def test_unknown_scene(self):
         with self.assertRaisesRegex(Failure, "no scene ofice of high"):
             scenes.select(scenes.all_scenes(), names=["ofice"])
