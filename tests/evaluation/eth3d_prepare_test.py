@@ -52,6 +52,7 @@ class Scenes(unittest.TestCase):
                        for key, value in zip(words[::2], words[1::2])}
             self.assertEqual(options, {"agreement": "0", "max_reproj_error": error,
                                        "max_normal_error": "20"})
+
     def test_unknown_scene(self):
         with self.assertRaisesRegex(Failure, "no scene ofice of high"):
             scenes.select(scenes.all_scenes(), names=["ofice"])
