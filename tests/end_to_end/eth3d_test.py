@@ -446,7 +446,7 @@ class Pipeline(Case):
                             evaluator)
         self.assert_done(result)
         calls = self.read(self.path("calls")).splitlines()
-        self.assertEqual(len(calls), 8)
+        self.assertEqual(len(calls), 12)  # Two scenes, methods; three clouds.
         self.assertIn("--tolerances 0.01,0.02,0.05,0.1,0.2,0.5", calls[0])
         self.assertIn("scans/scan_alignment.mlp", calls[0])
         for name in ("office_dslr", "office_rig"):

@@ -107,8 +107,8 @@ class EvaluateTest(TestCase):
                            float(by_method["plain"]["completeness"]))
         self.assertEqual({row["f1"] for row in self.read_csv("out/tables/room_points_fused.csv")},
                          {"0.5"})
-        # Two clouds of each run, one of the other tool.
-        self.assertEqual(len(self.read("evaluated").splitlines()), 4 * 2 + 1)
+        # Three clouds of each run, one of the other tool.
+        self.assertEqual(len(self.read("evaluated").splitlines()), 4 * 3 + 1)
 
     def check_page(self):
         text = self.read("out/report.md")
