@@ -36,7 +36,7 @@ reconstruct_example() {
   sed -n '/^## room/,/^!/ { /^!/d; p }' "$out/report.md" # Without its pictures.
   echo "Report:   $out/report.md"
   echo "Pictures: $out/figures/"
-  echo "Points:   $out/room/plain-0/fused.ply, $out/room/tapa-0/fused.ply"
+  echo "Points:   $out/room/plain-0/fused_agreement.ply, $out/room/tapa-0/fused_agreement.ply"
 }
 
 # Folder of the largest of the models that the mapper made.
