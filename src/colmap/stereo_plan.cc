@@ -225,7 +225,7 @@ std::vector<PassPlan> Passes(const PatchMatchOptions& options,
   return passes;
 }
 
-// A filter that asks for more views than there are leaves nothing.
+// A filter that asks for more views than there are makes do with all of them.
 void WarnOfFilter(const PatchMatchOptions& options, const StereoPlan& plan) {
   const auto num_needed =
       static_cast<size_t>(std::max(options.filter_min_num_consistent, 0));
@@ -242,9 +242,9 @@ void WarnOfFilter(const PatchMatchOptions& options, const StereoPlan& plan) {
                  ", have fewer source images than "
                  "filter_min_num_consistent (" +
                  std::to_string(options.filter_min_num_consistent) +
-                 "), so that nothing is left of their maps; lower "
-                 "--PatchMatchStereo.filter_min_num_consistent, and "
-                 "--StereoFusion.min_num_pixels with it");
+                 "), so that fewer have to agree on them; to fuse them with "
+                 "--StereoFusion.agreement 0 lower "
+                 "--StereoFusion.min_num_pixels to their number");
   }
 }
 
