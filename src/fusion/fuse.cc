@@ -93,8 +93,9 @@ class Fusion {
 
   bool FuseView(int index, FusedView* fused) {
     const FusionView& view = problem_.views[index];
-    const auto surface = problem_.read_surface(index);
-    CheckSize(view, *surface);
+    const auto whole_surface = problem_.read_surface(index);
+    CheckSize(view, *whole_surface);
+    const SurfaceMap surface = WithoutUsed(*whole_surface, *used_[index]);
     ViewEvidence evidence(view.width, view.height);
     std::vector<ViewPair> pairs;
     for (const int other : view.neighbors) {
@@ -103,7 +104,7 @@ class Fusion {
       const int number = static_cast<int>(pairs.size());
       pairs.emplace_back(view.camera, problem_.views[other].camera, limits_);
       if (!ForRows(view, 1, [&](int begin, int end) {
-            AskNeighbor(pairs.back(), *surface, *other_surface, number, begin,
+            AskNeighbor(pairs.back(), surface, *other_surface, number, begin,
                         end, &evidence);
           })) {
         return false;
@@ -119,7 +120,7 @@ class Fusion {
                    WeighEvidence(evidence, options_.doubt, begin, end, &weight);
                  }) ||
         !ForRows(view, 0.8, [&](int begin, int end) {
-          SpreadEvidence(view.camera, *surface, radius, weight, begin, end,
+          SpreadEvidence(view.camera, surface, radius, weight, begin, end,
                          &spread);
         })) {
       return false;
@@ -129,7 +130,7 @@ class Fusion {
     std::vector<std::vector<FusedPoint>> rows(view.height);
     if (!ForRows(view, 1, [&](int begin, int end) {
           for (int row = begin; row < end; ++row) {
-            MakePoints(index, row, *surface, evidence, spread, colors, pairs,
+            MakePoints(index, row, surface, evidence, spread, colors, pairs,
                        &rows[row]);
           }
         })) {
@@ -145,6 +146,18 @@ class Fusion {
       fused->points.insert(fused->points.end(), row.begin(), row.end());
     }
     return true;
+  }
+
+  // Pixels that points of other views show already need not be looked at.
+  static SurfaceMap WithoutUsed(SurfaceMap surface, const UsedPixels& used) {
+    for (int row = 0; row < surface.height(); ++row) {
+      for (int col = 0; col < surface.width(); ++col) {
+        if (used.IsMarked(row, col)) {
+          surface.At(row, col).depth = 0;
+        }
+      }
+    }
+    return surface;
   }
 
   static void CheckSize(const FusionView& view, const SurfaceMap& surface) {
@@ -164,8 +177,7 @@ class Fusion {
     const IndexCamera rays(view.camera);
     for (int col = 0; col < view.width; ++col) {
       const float depth = surface.At(row, col).depth;
-      if (!IsDepth(depth) || weight.At(row, col) < options_.threshold ||
-          used_[index]->IsMarked(row, col)) {
+      if (!IsDepth(depth) || weight.At(row, col) < options_.threshold) {
         continue;
       }
       // The pixel's own estimate counts as one view that agrees in full.

@@ -80,7 +80,8 @@ class Fusion(tiny.TestCase):
                                # The points are on a plane, for which COLMAP's quality
                                # is negative by rounding.
                                *(["--DelaunayMeshing.quality_regularization", "0"]
-                                 if is_delaunay else ["--PoissonMeshing.depth", "6"])])
+                                 if is_delaunay else ["--PoissonMeshing.depth", "6"])],
+                              cwd=self.folder)  # For its temporary files.
             if is_delaunay and "requires CGAL" in result.stdout:
                 continue
             self.assert_success(result)
