@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "src/base/failure.h"
+#include "src/base/hash.h"
 #include "src/colmap/option_list.h"
 #include "src/colmap/workers.h"
 #include "src/mvs/levels.h"
@@ -110,19 +111,14 @@ PatchMatchOptions PassOptions(PatchMatchOptions options, Pass pass, int level,
 
 uint64_t ViewSeed(uint64_t seed, const std::string& image_name, Pass pass,
                   int level) {
-  // FNV-1a.
-  uint64_t hash = 0xcbf29ce484222325u;
-  const auto add = [&hash](uint8_t byte) {
-    hash = (hash ^ byte) * 0x100000001b3u;
-  };
+  Hash hash;
+  const auto add = [&hash](uint8_t byte) { hash.Add(&byte, 1); };
   for (int shift = 0; shift < 64; shift += 8) {
     add(static_cast<uint8_t>(seed >> shift));
   }
   add(static_cast<uint8_t>(2 * level + static_cast<int>(pass)));
-  for (const char c : image_name) {
-    add(static_cast<uint8_t>(c));
-  }
-  return hash;
+  hash.Add(image_name.data(), image_name.size());
+  return hash.value();
 }
 
 }  // namespace tapa
