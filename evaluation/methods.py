@@ -47,6 +47,9 @@ for _name, _label, _option in (("weights", "weights", "texture_weighting"),
         _ALL[f"{_base}-{_name}"] = (f"{_ALL[_base][0]} without {_label}", [
             *_ALL[_base][1], *_stereo(**{"tapa_" + _option: 0})])
 
+_ALL["tapa-sightings"] = ("TAPA without sightings",
+                          _TAPA + _stereo(tapa_completion_sightings=0))
+
 METHODS = {name: options for name, (_, options) in _ALL.items()}
 
 

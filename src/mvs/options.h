@@ -44,6 +44,7 @@ struct TapaOptions {
   // Options::filter_min_num_consistent but at least one. Planes of superpixels,
   // fitted to those that reach that number, replace the others.
   bool completion = true;
+  bool completion_sightings = true;
   double completion_agreement = 0.5;
   double completion_radius = 0.1;
   double completion_textureness = 0.5;
@@ -119,6 +120,9 @@ void VisitTapaOptions(Options* options, const Visitor& visit) {
   option("tapa_completion", &o.completion, refines,
          "Believe only estimates that source views support, and complete the "
          "others with planes (beyond the paper)");
+  option("tapa_completion_sightings", &o.completion_sightings, completes,
+         "What other views see counts for and against planes where the view "
+         "itself has no estimate to believe");
   option("tapa_completion_agreement", &o.completion_agreement, completes,
          "Share of the estimates nearby that have to lie on a plane",
          Range::From(0, 1));

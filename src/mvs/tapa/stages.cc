@@ -9,6 +9,7 @@
 #include "src/mvs/sweep/consistency_mask.h"
 #include "src/mvs/tapa/completion.h"
 #include "src/mvs/tapa/fill.h"
+#include "src/mvs/tapa/sightings.h"
 #include "src/mvs/tapa/speckles.h"
 #include "src/mvs/tapa/textureness.h"
 #include "src/mvs/window_shape.h"
@@ -127,7 +128,7 @@ void TapaStages::Refine(Estimate* estimate) {
   }
 
   if (options_.tapa.completion && !control_.IsStopped()) {
-    Complete(trusted, estimate);
+    Complete(AddSightings(trusted, depth), trusted, estimate);
   }
   if (!control_.IsStopped()) {
     Fill(estimate);
@@ -146,17 +147,34 @@ void TapaStages::KeepConsistent(int min_num_consistent,
   RemoveSpeckles(SpeckleContinuity(), MaxSpeckleSize(), depth);
 }
 
-void TapaStages::Complete(const Map<float>& trusted, Estimate* estimate) {
+// Trusted estimates and, where there are none, what source views see there.
+Map<float> TapaStages::AddSightings(const Map<float>& trusted,
+                                    const Map<float>& depth) const {
+  Map<float> evidence = trusted;
+  if (!options_.geom_consistency || !options_.tapa.completion_sightings) {
+    return evidence;
+  }
+  Map<float> sightings =
+      FindSightings(options_, problem_, control_, depth, trusted);
+  RemoveSpeckles(SpeckleContinuity(), MaxSpeckleSize(), &sightings);
+  for (size_t i = 0; i < evidence.size(); ++i) {
+    evidence.data()[i] = std::max(evidence.data()[i], sightings.data()[i]);
+  }
+  return evidence;
+}
+
+void TapaStages::Complete(const Map<float>& evidence, const Map<float>& trusted,
+                          Estimate* estimate) {
   const int radius = static_cast<int>(options_.tapa.completion_radius *
                                       estimate->depth.width());
   LocalPlanes planes;
   for (Segmentation* segmentation : {&record_.fine, &record_.coarse}) {
     if (segmentation->superpixels.count() > 0) {
       segmentation->planes =
-          FitPlanes(options_.tapa, camera_, trusted, segmentation->superpixels,
+          FitPlanes(options_.tapa, camera_, evidence, segmentation->superpixels,
                     options_.seed);
       LocalPlanes found =
-          FindLocalPlanes(problem_, camera_, trusted, *segmentation, radius);
+          FindLocalPlanes(problem_, camera_, evidence, *segmentation, radius);
       if (planes.depth.empty()) {
         planes = std::move(found);
       } else {

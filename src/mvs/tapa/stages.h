@@ -59,7 +59,10 @@ class TapaStages {
                       Segmentation* segmentation) const;
   void KeepConsistent(int min_num_consistent, const Estimate& estimate,
                       Map<float>* depth) const;
-  void Complete(const Map<float>& trusted, Estimate* estimate);
+  Map<float> AddSightings(const Map<float>& trusted,
+                          const Map<float>& depth) const;
+  void Complete(const Map<float>& evidence, const Map<float>& trusted,
+                Estimate* estimate);
   void Fill(Estimate* estimate) const;
   void NoteOrigin(Origin origin, const Map<float>& depth);
   void ClearOthers(Estimate* estimate) const;
