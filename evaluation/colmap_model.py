@@ -14,7 +14,7 @@ import numpy as np
 from .processes import Failure
 
 # Number of parameters by the name of the model.
-_PARAMETERS = {"SIMPLE_PINHOLE": 3, "PINHOLE": 4, "THIN_PRISM_FISHEYE": 12}
+PARAMETERS = {"SIMPLE_PINHOLE": 3, "PINHOLE": 4, "THIN_PRISM_FISHEYE": 12}
 
 
 @dataclass(frozen=True)
@@ -66,6 +66,19 @@ def _lines(path):
         raise Failure(f"{path} cannot be read: {error}") from error
 
 
+def check_camera(camera, number, path):
+    """Raises Failure if a camera cannot be used."""
+    model = camera.model
+    if model not in PARAMETERS:
+        raise Failure(f"{path}: cannot use the camera model {model}; there are "
+                      + ", ".join(PARAMETERS))
+    if len(camera.params) != PARAMETERS[model]:
+        raise Failure(f"{path}: {model} has {PARAMETERS[model]} parameters, "
+                      f"not {len(camera.params)}")
+    if camera.width <= 0 or camera.height <= 0:
+        raise Failure(f"{path}: camera {number} has no pixels")
+
+
 def read_cameras(path):
     """Cameras by their numbers."""
     cameras = {}
@@ -79,14 +92,7 @@ def read_cameras(path):
                             tuple(float(value) for value in fields[4:]))
         except (IndexError, ValueError) as error:
             raise Failure(f"{path}: no camera in the line '{line}'") from error
-        if model not in _PARAMETERS:
-            raise Failure(f"{path}: cannot use the camera model {model}; there are "
-                             + ", ".join(_PARAMETERS))
-        if len(camera.params) != _PARAMETERS[model]:
-            raise Failure(f"{path}: {model} has {_PARAMETERS[model]} parameters, "
-                             f"not {len(camera.params)}")
-        if camera.width <= 0 or camera.height <= 0:
-            raise Failure(f"{path}: camera {number} has no pixels")
+        check_camera(camera, number, path)
         cameras[number] = camera
     if not cameras:
         raise Failure(f"{path} holds no camera")

@@ -51,42 +51,70 @@ def is_far(values):
     return bool(len(values)) and bool(np.abs(values).max() > _FAR)
 
 
+class Cloud(NamedTuple):
+    """Points with their colours, (n, 3) of red, green and blue, and how many views confirm them.
+
+    Those are None where the file does not say. kept: which of the vertices of the file are there.
+    """
+    points: np.ndarray
+    colors: np.ndarray
+    confidence: np.ndarray
+    kept: np.ndarray
+
+
 def read_ply(path):
     """Points of a file, and how many were left out as they are not finite."""
+    points, finite = _read_finite(path)
+    return points, len(finite) - len(points)
+
+
+def read_cloud(path):
+    """Points of a file as a Cloud; those that are not finite are left out."""
+    values, finite = _read_finite(path, ("red", "green", "blue", "confidence"))
+    colors, confidence = values[:, 3:6], values[:, 6]
+    is_colored = bool((colors >= 0).all() and (colors <= 255).all())  # NaN is neither.
+    return Cloud(values[:, :3], colors.astype(np.uint8) if is_colored else None,
+                 confidence.astype(np.float32) if np.isfinite(confidence).all() else None, finite)
+
+
+def _read_finite(path, more=()):
+    """The vertices whose coordinates are finite, and which of all they are."""
     try:
         with open(path, "rb") as file:
-            points = _read_vertices(file, path)
+            values = _read_vertices(file, path, more)
     except OSError as error:
         raise Failure(f"{path} cannot be read: {error.strerror}") from error
     # Of single precision: what is beyond its range is as good as infinite.
-    finite = (np.abs(points) <= np.finfo(np.float32).max).all(axis=1)
-    num_left_out = len(points) - np.count_nonzero(finite)
-    points = points[finite] if num_left_out else points
-    return points if is_far(points) else points.astype(np.float32, copy=False), num_left_out
+    finite = (np.abs(values[:, :3]) <= np.finfo(np.float32).max).all(axis=1)
+    values = values if finite.all() else values[finite]
+    return values if is_far(values[:, :3]) else values.astype(np.float32, copy=False), finite
 
 
-def _read_vertices(file, path):
+def _read_vertices(file, path, more):
+    """Coordinates and, in the columns behind them, further properties; NaN where there is none."""
     byte_order, elements, num_lines = _read_header(file, path)
     source = _Binary(file, byte_order) if byte_order else _Ascii(file, num_lines)
     for element in elements:
         is_vertex = element.name == "vertex"
-        columns = _coordinate_columns(element, path) if is_vertex else []
+        places, columns = _columns(element, path, more) if is_vertex else ([], [])
         # A wrong header must not ask for all memory; what is not touched is not taken.
         most = min(element.count, os.fstat(file.fileno()).st_size)
-        is_double = is_vertex and all(element.properties[i].type == "f8" for i in columns)
-        points = np.empty((most if is_vertex else 0, 3), np.float64 if is_double else np.float32)
+        is_double = is_vertex and all(element.properties[i].type == "f8" for i in columns[:3])
+        values = np.empty((most if is_vertex else 0, 3 + len(more)),
+                          np.float64 if is_double else np.float32)
         end = 0
         # What has no properties takes no place in the file.
         for rows in source.rows(element, columns, path) if element.properties else ():
             begin, end = end, end + len(rows)
             if is_vertex:
                 with np.errstate(over="ignore", invalid="ignore"):
-                    points[begin:end] = rows
+                    values[begin:end, places] = rows
         if end < element.count and element.properties:
             raise Failure(f"{path} is truncated: of {element.count} elements {element.name} it "
                           f"has {end}")
         if is_vertex:
-            return points
+            values[:, np.setdiff1d(np.arange(values.shape[1]), places)] = np.nan
+            return values
     raise Failure(f"{path} has no vertices")
 
 
@@ -126,14 +154,16 @@ def _read_header(file, path):
     return byte_order, elements, number
 
 
-def _coordinate_columns(element, path):
-    """Which of the properties of a vertex are its coordinates."""
+def _columns(element, path, more):
+    """Which of the coordinates and further properties a vertex has, and where it has them."""
     columns = {entry.name: i for i, entry in reversed(list(enumerate(element.properties)))
                if not entry.size_type}
     for name in "xyz":
         if name not in columns:
             raise Failure(f"{path} has no property {name} of its vertices")
-    return [columns[name] for name in "xyz"]
+    found = [(place, columns[name]) for place, name in enumerate(("x", "y", "z", *more))
+             if name in columns]
+    return [place for place, _ in found], [column for _, column in found]
 
 
 class _Binary:

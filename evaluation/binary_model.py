@@ -1,0 +1,75 @@
+"""Cameras and poses of COLMAP's binary models, as colmap_model.py reads those of text models."""
+
+import os
+import struct
+
+import numpy as np
+
+from . import files
+from .colmap_model import PARAMETERS, Camera, View, check_camera, rotation_of
+from .processes import Failure
+
+# COLMAP's numbers of the camera models that can be used.
+_MODELS = {0: "SIMPLE_PINHOLE", 1: "PINHOLE", 10: "THIN_PRISM_FISHEYE"}
+
+
+class _Values:
+    """The values of a file, one after the other."""
+
+    def __init__(self, path):
+        self._data = files.read_bytes(path)
+        self._at = 0
+
+    def take(self, code):
+        values = struct.unpack_from("<" + code, self._data, self._at)
+        self._at += struct.calcsize("<" + code)
+        return values
+
+    def take_name(self):
+        end = self._data.index(b"\0", self._at)
+        name = os.fsdecode(self._data[self._at:end])
+        self._at = end + 1
+        return name
+
+    def skip(self, size):
+        self._at += size
+
+
+def exists(folder):
+    return os.path.exists(os.path.join(folder, "images.bin"))
+
+
+def read_views(folder):
+    """Views of the binary model in a folder, in the order of their names."""
+    path = os.path.join(folder, "cameras.bin")
+    try:
+        cameras = _read_cameras(path)
+        path = os.path.join(folder, "images.bin")
+        views = _read_views(path, cameras)
+    except (struct.error, KeyError, ValueError) as error:
+        raise Failure(f"{path} is damaged") from error
+    if not views:
+        raise Failure(f"{path} holds no photograph")
+    return sorted(views, key=lambda view: view.name)
+
+
+def _read_cameras(path):
+    values, cameras = _Values(path), {}
+    for _ in range(values.take("Q")[0]):
+        number, model, width, height = values.take("iiQQ")
+        name = _MODELS.get(model, f"number {model}")
+        camera = Camera(name, width, height, values.take(f"{PARAMETERS.get(name, 0)}d"))
+        check_camera(camera, number, path)
+        cameras[number] = camera
+    return cameras
+
+
+def _read_views(path, cameras):
+    values, views = _Values(path), []
+    for _ in range(values.take("Q")[0]):
+        number, *pose, camera = values.take("i7di")
+        name = values.take_name()
+        views.append(View(number, name, cameras[camera], rotation_of(pose[:4]),
+                          np.array(pose[4:])))
+        values.skip(24 * values.take("Q")[0])  # What it observes.
+    return views
