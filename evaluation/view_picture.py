@@ -118,17 +118,22 @@ def color_normals(normals):
     return np.where((normals != 0).any(axis=2, keepdims=True), image, 0).astype(np.uint8)
 
 
+def normal_ball(size):
+    """The colours of all normals that face the camera, as on a ball, on white."""
+    x, y = np.meshgrid(np.linspace(-1, 1, size), np.linspace(-1, 1, size))
+    z = np.sqrt(np.maximum(1 - x * x - y * y, 0))
+    ball = color_normals(np.stack((x, y, -z), axis=2))
+    ball[x * x + y * y > 1] = 255
+    return ball
+
+
 def _draw_legend(figure, axes, lines, scale, has_normals, is_metric):
     for number, line in enumerate(lines):
         axes.text(0, 0.96 - 0.1 * number, line, transform=axes.transAxes, va="top",
                   fontsize=min(12, 500 / max(len(line), 1)), parse_math=False)
     if has_normals:
-        x, y = np.meshgrid(np.linspace(-1, 1, 81), np.linspace(-1, 1, 81))
-        z = np.sqrt(np.maximum(1 - x * x - y * y, 0))
-        ball = color_normals(np.stack((x, y, -z), axis=2))
-        ball[x * x + y * y > 1] = 255
         inset = axes.inset_axes((0.76, 0.72, 0.24, 0.24))
-        inset.imshow(ball)
+        inset.imshow(normal_ball(81))
         inset.axis("off")
         inset.set_title("normals", y=-0.3, fontsize=9)
     near, far = scale.norm.vmin, scale.norm.vmax

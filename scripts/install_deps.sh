@@ -8,8 +8,8 @@ packages=(
   # Tools.
   g++ cmake ninja-build ccache git python3 python3-venv ca-certificates
   # Scores and reports.
-  curl p7zip-full python3-matplotlib python3-numpy python3-opencv python3-pydantic
-  python3-scipy
+  curl libjs-three p7zip-full python3-jinja2 python3-markdown python3-matplotlib
+  python3-numpy python3-opencv python3-pydantic python3-scipy
   # COLMAP.
   libboost-filesystem-dev libboost-graph-dev libboost-program-options-dev
   libboost-system-dev libboost-test-dev libceres-dev libcgal-dev libeigen3-dev
@@ -19,9 +19,9 @@ packages=(
   # The engine, the tests and the benchmarks.
   libbenchmark-dev libboost-context-dev libgtest-dev libhwy-dev libopencv-contrib-dev libopencv-dev
 )
-# Comes along when something is installed, but is not missed: it renders scenes of
-# examples/ (their tests are skipped without it).
-optional=(povray)
+# Come along when something is installed, but are not missed: povray renders scenes of
+# examples/, and chromium looks at pages (their tests are skipped without them).
+optional=(povray chromium)
 
 if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
   echo "WARNING: This is no Debian: see to it yourself that there is what" \
