@@ -18,9 +18,10 @@ A scene of examples/ that has no photographs, such as examples/office, is render
 first, into OUT/scenes, which takes some minutes and needs POV-Ray.
 
 Each method runs once per seed in OUT/SET/METHOD-SEED, where SET is the name of
-DATA. OUT/report.md has tables, figures and pictures, OUT/tables/ the same
-figures as CSV. A run that was stopped goes on where it was. A method that fails
-does not stop the others, and is listed at the end. While one is at work in
+DATA. OUT/report.md has tables, figures and pictures, OUT/report.html the same in
+one file with points to turn and zoom, OUT/tables/ the same figures as CSV. A run that
+was stopped goes on where it was. A method that fails does not stop the others, and is
+listed at the end. While one is at work in
 OUT, another is refused; --report_only is not. Options of patch_match_stereo follow --.
 --dry_run prints, in order, the commands that are still to be run.
 
@@ -45,6 +46,7 @@ import sys
 from . import (cloud_scores, command_line, experiment, files, machine, pictures, plan, processes,
                report, scenes, steps, stereo_run)
 from .experiment import Experiment
+from .page import report_page
 from .processes import Failure
 
 
@@ -163,9 +165,16 @@ def _write_report(experiments, arguments, failures):
     path = os.path.join(out, "report.md")
     reports = [report.SetReport(planned, out, out, os.path.join(out, "figures"),
                                 os.path.join(out, "tables")) for planned in experiments]
-    report.write_report(path, reports, failures,
-                        ["Points were not scored, as asked."] if arguments.no_clouds else [])
+    text = report.write_report(path, reports, failures,
+                               ["Points were not scored, as asked."] if arguments.no_clouds
+                               else [])
     print(f"Report: {path}")
+    page = os.path.join(out, "report.html")
+    try:
+        report_page.write(page, text, reports)
+        print(f"Page: {page}")
+    except Failure as error:  # It has nothing that the report does not have, but to turn points.
+        processes.say(f"WARNING: there is no page {page}: {error}")
 
 
 def _write_page(page, arguments):

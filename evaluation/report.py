@@ -222,7 +222,7 @@ def _describe_set(experiment):
 
 
 def write_report(path, reports, failures=(), notes=()):
-    """Writes a page with all blocks of all sets."""
+    """Writes a page with all blocks of all sets. Returns its text."""
     parts = ["# Evaluation of dense stereo\n", "How to read this page:\n", GLOSSARY]
     parts += [note + "\n" for note in notes]
     for part in reports:
@@ -233,4 +233,6 @@ def write_report(path, reports, failures=(), notes=()):
     missing += [f"- {name}: {message}" for name, message in failures if message not in known]
     if missing:
         parts += ["## What is missing\n", "\n".join(missing) + "\n"]
-    files.write_text(path, "\n".join(part for part in parts if part))
+    text = "\n".join(part for part in parts if part)
+    files.write_text(path, text)
+    return text

@@ -10,6 +10,8 @@ _ELAPSED = re.compile(r"Elapsed time: ([\d.]+) \[minutes\]")
 _VIEW = re.compile(r"\s*[\d.]+ %\s+\S+ to go  (?:level \d+ )?(?:photometric|geometric) "
                    r"\d+/\d+ (.+): [\d.]+ megapixels in ([\d.]+) s")
 
+_PLAIN = {"Finding good initial image pair": "Camera poses"}  # Of what a heading begins.
+
 
 class Step(NamedTuple):
     """Something that a program did and told the time of."""
@@ -34,25 +36,21 @@ class Logs:
 
     def _read(self, path):
         lines = files.read_bytes(path).decode("utf-8", errors="surrogateescape").splitlines()
-        name = os.path.basename(path)
+        command, heading = "", ""
         for before, line, after in zip(["", *lines], lines, [*lines[1:], ""]):
             if line.startswith("$ "):
-                name = line[2:]
+                command = line[2:]
             elif before.startswith("=====") and after.startswith("====="):
-                name = line
+                heading = heading or line  # What comes below it is a part of the step.
             elif match := _ELAPSED.match(line):
-                self._add_step(name, 60 * float(match[1]), path)
+                name = command or _PLAIN.get(heading, heading) or os.path.basename(path)
+                self.steps.append(Step(name, 60 * float(match[1]), os.path.basename(path)))
+                heading = ""
             elif match := _VIEW.match(line):
                 self.view_seconds[match[1]] = (self.view_seconds.get(match[1], 0)
                                                + float(match[2]))
             elif line.startswith("WARNING: "):
                 self._warnings.append(line.removeprefix("WARNING: "))
-
-    def _add_step(self, name, seconds, path):
-        """Parts with one heading, of which there may be hundreds, count as one step."""
-        if self.steps and self.steps[-1].name == name and self.steps[-1].log == path:
-            seconds += self.steps.pop().seconds
-        self.steps.append(Step(name, seconds, path))
 
     def why_left_out(self, name):
         """The last warning that a photograph was left out, "" if there is none."""

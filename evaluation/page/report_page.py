@@ -1,0 +1,72 @@
+"""The report of scripts/evaluate as one HTML file, with the points of each method to turn."""
+
+import base64
+import mimetypes
+import os
+import re
+import urllib.parse
+
+from .. import binary_model, colmap_model, files, methods, pictures
+from . import confidence, html, scene
+
+_POINTS = 1_000_000  # Of all sets together.
+_CLOUDS = ("fused_agreement", "fused", "fused_default")  # The first that there is, of a method.
+_IMAGE = re.compile(r'src="([^"]*)"')
+
+
+def write(path, markdown, reports):
+    """markdown: of the page beside it, whose pictures are taken in; reports: report.SetReport."""
+    html.check_libraries("markdown")
+    paths = {part.experiment.name: _clouds(part) for part in reports}
+    count = _POINTS // max(1, sum(map(len, paths.values())))
+    html.write(path, "report.html", title=_title(markdown),
+               body=_take_in_pictures(_to_html(markdown), os.path.dirname(path)),
+               viewers=[(part.experiment.name, _scene(part, paths[part.experiment.name], count))
+                        for part in reports if paths[part.experiment.name]])
+
+
+def _title(markdown):
+    return markdown.partition("\n")[0].removeprefix("# ")
+
+
+def _to_html(text):
+    """Markdown as HTML, in which HTML of its own is text like any other."""
+    import markdown  # Only reports need it.
+
+    converter = markdown.Markdown(extensions=["tables"])
+    converter.preprocessors.deregister("html_block")
+    converter.inlinePatterns.deregister("html")
+    return converter.convert(text.partition("\n")[2])
+
+
+def _take_in_pictures(page, folder):
+    """Replaces addresses of files in or below a folder by what these hold."""
+    def data_of(match):
+        path = os.path.join(folder, urllib.parse.unquote(match[1].replace("&amp;", "&")))
+        kind = mimetypes.guess_type(path)[0] or "application/octet-stream"
+        data = base64.b64encode(files.read_bytes(path)).decode("ascii")
+        return f'src="data:{kind};base64,{data}"'
+
+    return _IMAGE.sub(data_of, page)
+
+
+def _clouds(part):
+    """Paths of one cloud of each method that pictures show, by its label."""
+    found = {}
+    for method in pictures.chosen_methods(part.experiment.shown_methods()):
+        for run in part.by_method.get(method, [])[:1]:
+            candidates = [os.path.join(run.folder, name + ".ply") for name in _CLOUDS]
+            path = next(filter(os.path.exists, candidates), None)
+            if path:
+                found[methods.label(method)] = path
+    return found
+
+
+def _scene(part, paths, count):
+    model = os.path.join(part.experiment.data, "sparse")
+    read = binary_model if binary_model.exists(model) else colmap_model
+    viewer = scene.Scene(read.read_views(model))
+    labels = {path: label for label, path in paths.items()}
+    scene.add_files(viewer, list(labels), count * len(labels), confidence.of_points,
+                    lambda path: f"{labels[path]} ({os.path.basename(path)})")
+    return viewer.json()
