@@ -4,7 +4,8 @@
 #   scripts/demo.sh                 the built-in example, without and with TAPA,
 #                                   with scores
 #   scripts/demo.sh PHOTOS [OUT]    a folder of photographs, with TAPA; the result
-#                                   goes to OUT (PHOTOS-reconstruction beside it)
+#                                   goes to OUT (PHOTOS-reconstruction beside it);
+#                                   OUT/result.html shows all of it in a browser
 #
 # Installs what is missing and builds first. A run that was stopped goes on
 # where it left off. Photographs are scaled down to at most MAX_IMAGE_SIZE (1600)
@@ -34,7 +35,7 @@ reconstruct_example() {
   run "$here/evaluate" "$root/examples/room" --out "$out" --num_views 3
   echo
   sed -n '/^## room/,/^!/ { /^!/d; p }' "$out/report.md" # Without its pictures.
-  echo "Report:   $out/report.md"
+  echo "Report:   $out/report.md, and as a page to open in a browser $out/report.html"
   echo "Pictures: $out/figures/"
   echo "Points:   $out/room/plain-0/fused_agreement.ply, $out/room/tapa-0/fused_agreement.ply"
 }
@@ -99,7 +100,7 @@ reconstruct_photos() {
   echo "$sums" >"$out/photographs.txt"
   echo "$list" >"$out/photographs.list"
 
-  reconstruct_sparse "$photos" "$out" "$count"
+  reconstruct_sparse "$photos" "$out" "$count" | tee -ia "$out/sparse.log"
   model=$(largest_model "$out/sparse") ||
     fail "no camera poses could be found; take the photographs with more overlap"
   if [[ ! -f $out/dense/undistorted.done ]]; then
@@ -110,14 +111,17 @@ reconstruct_photos() {
   fi
   # A photograph that sees nothing from another angle is left out.
   run "$bin/colmap" patch_match_stereo --workspace_path "$out/dense" \
-    --PatchMatchStereo.allow_missing_files 1 --PatchMatchStereo.tapa 1
+    --PatchMatchStereo.allow_missing_files 1 --PatchMatchStereo.tapa 1 \
+    --PatchMatchStereo.tapa_debug "$out/dense/tapa_debug" | tee -ia "$out/dense/stereo.log"
   run "$bin/colmap" stereo_fusion --workspace_path "$out/dense" \
-    --output_path "$out/dense/fused.ply"
+    --output_path "$out/dense/fused.ply" | tee -ia "$out/dense/fusion.log"
   run "$bin/evaluate_depth_maps" --workspace_path "$out/dense" \
     --pictures "$out/pictures"
   echo
   echo "Pictures: $out/pictures/"
   echo "Points:   $out/dense/fused.ply"
+  "$here/result_page" "$out/dense" --out "$out/result.html" ||
+    echo "WARNING: there is no page to show the result; $out has all of it."
 }
 
 [[ $# -le 2 ]] || fail "usage: $(basename "$0") [PHOTOS [OUT]]"

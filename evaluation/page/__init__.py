@@ -13,4 +13,5 @@ the points. The same viewer stands in the report.html of scripts/evaluate.
     thinning.py     fewer points, spread evenly
     html.py         templates/ and three.js become a page
     report_page.py  the report of scripts/evaluate as a page
+    browser.py      a picture of a page, as a browser without a screen shows it
 """

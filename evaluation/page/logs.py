@@ -43,7 +43,7 @@ class Logs:
             elif before.startswith("=====") and after.startswith("====="):
                 heading = heading or line  # What comes below it is a part of the step.
             elif match := _ELAPSED.match(line):
-                name = command or _PLAIN.get(heading, heading) or os.path.basename(path)
+                name = command or _PLAIN.get(heading, heading) or os.path.basename(path)[:-4]
                 self.steps.append(Step(name, 60 * float(match[1]), os.path.basename(path)))
                 heading = ""
             elif match := _VIEW.match(line):
