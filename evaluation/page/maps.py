@@ -32,11 +32,10 @@ class Photograph(NamedTuple):
     distance: float = None
 
 
-def encode(image, format=".jpg"):
-    """An image, red, green, blue or grey, as a data URI."""
-    image = np.ascontiguousarray(image[:, :, ::-1] if image.ndim == 3 else image)
-    data = cv2.imencode(format, image, [cv2.IMWRITE_JPEG_QUALITY, 80,
-                                        cv2.IMWRITE_PNG_COMPRESSION, 9])[1]
+def encode(image, format=".jpg", quality=80):
+    """An image, (height, width, 3) of red, green and blue, as a data URI."""
+    data = cv2.imencode(format, np.ascontiguousarray(image[:, :, ::-1]), [
+        cv2.IMWRITE_JPEG_QUALITY, quality, cv2.IMWRITE_PNG_COMPRESSION, 9])[1]
     kind = "jpeg" if format == ".jpg" else "png"
     return f"data:image/{kind};base64,{base64.b64encode(data).decode('ascii')}"
 
@@ -121,8 +120,10 @@ class Painter:
 def _numbers(title, values, most):
     """Numbers of views, up to most, as a picture; black where there is none."""
     scale = cm.ScalarMappable(colors.Normalize(0, most, clip=True), "viridis")
-    return Picture(title, encode(view_picture.color(values, scale, values > 0, "black")),
-                   (gradient(scale.cmap), ["0", f"{most / 2:.3g}", f"{most:.3g}"]))
+    image = view_picture.color(values, scale, values > 0, "black")
+    # They change from pixel to pixel, which takes much place at a higher quality.
+    return Picture(title, encode(image, quality=60), (gradient(scale.cmap), [
+        "0", f"{most / 2:.3g}", f"{most:.3g}"]))
 
 
 def gradient(colormap):

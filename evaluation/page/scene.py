@@ -100,9 +100,9 @@ def _typical_distance(centres):
 
 
 def _spacing(points):
-    """The median distance of neighbouring points; 0 where there are none."""
+    """How far apart most neighbouring points are at most; 0 where there are none."""
     distances = _nearest(points, points[::max(1, len(points) // _SAMPLES)])
-    return float(np.median(distances)) if len(distances) else 0.0
+    return float(np.percentile(distances, 90)) if len(distances) else 0.0
 
 
 def _nearest(points, samples):
