@@ -1,4 +1,4 @@
-"""A picture of a page, as a browser without a screen shows it: of scripts/page_picture and tests."""
+"""A picture of a page, as a browser without a screen shows it."""
 
 import os
 import re

@@ -58,7 +58,9 @@ def _other_models(workspace):
 
 def _read_database(path):
     """By name: how many features a photograph has, and how many others it matches."""
-    address = f"file:{urllib.parse.quote(os.path.abspath(path))}?mode=ro"
+    # Reading leaves files of its own beside a database that may change meanwhile.
+    how = "mode=ro" if os.path.exists(path + "-wal") else "immutable=1"
+    address = f"file:{urllib.parse.quote(os.path.abspath(path))}?{how}"
     try:
         with closing(sqlite3.connect(address, uri=True)) as database:
             names = dict(database.execute("SELECT image_id, name FROM images"))

@@ -14,10 +14,11 @@ _PLAIN = {"Finding good initial image pair": "Camera poses"}  # Of what a headin
 
 
 class Step(NamedTuple):
-    """Something that a program did and told the time of."""
+    """Something that a program did and told the time of, in so many runs together."""
     name: str
-    seconds: float
     log: str
+    seconds: float
+    num_runs: int
 
 
 class Logs:
@@ -44,13 +45,21 @@ class Logs:
                 heading = heading or line  # What comes below it is a part of the step.
             elif match := _ELAPSED.match(line):
                 name = command or _PLAIN.get(heading, heading) or os.path.basename(path)[:-4]
-                self.steps.append(Step(name, 60 * float(match[1]), os.path.basename(path)))
+                self._add_step(name, os.path.basename(path), 60 * float(match[1]))
                 heading = ""
             elif match := _VIEW.match(line):
                 self.view_seconds[match[1]] = (self.view_seconds.get(match[1], 0)
                                                + float(match[2]))
             elif line.startswith("WARNING: "):
                 self._warnings.append(line.removeprefix("WARNING: "))
+
+    def _add_step(self, name, log, seconds):
+        """A run that was stopped and started again has its steps again, too."""
+        before = self.steps[-1] if self.steps else None
+        if before and (before.name, before.log) == (name, log):
+            self.steps[-1] = Step(name, log, before.seconds + seconds, before.num_runs + 1)
+        else:
+            self.steps.append(Step(name, log, seconds, 1))
 
     def why_left_out(self, name):
         """The last warning that a photograph was left out, "" if there is none."""

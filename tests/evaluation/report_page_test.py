@@ -25,7 +25,8 @@ class ReportPageTest(ProgramTest):
 
     def test_pictures_are_taken_in(self):
         files.write_bytes(self.path("page/figures/a b.png"), b"picture")
-        text = self.write_page("# Title\n\n![A](figures/a%20b.png)\n\n| a | b |\n|---|---|\n| 1 | 2 |")
+        text = self.write_page("# Title\n\n![A](figures/a%20b.png)\n\n"
+                               "| a | b |\n|---|---|\n| 1 | 2 |")
         self.assertEqual(Addresses(text).found, ["data:image/png;base64,cGljdHVyZQ=="])
         self.assertIn("<title>Title</title>", text)
         self.assertIn("<td>2</td>", text)

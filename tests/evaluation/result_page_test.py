@@ -258,8 +258,10 @@ class PageTest(PageCase):
                 ("Feature extraction", "Elapsed time: 1.0 [minutes]\n"),
                 ("Finding good initial image pair", ""), ("Registering image #4 (3)", ""),
                 ("Global bundle adjustment", "Elapsed time: 2.0 [minutes]\n"))))
-        self.assertEqual([step[:2] for step in Logs([self.folder, self.folder]).steps],
-                         [("Feature extraction", 60), ("Camera poses", 120)])
+        self.write("b.log", "Elapsed time: 1.0 [minutes]\nElapsed time: 1.5 [minutes]\n")
+        self.assertEqual(Logs([self.folder, self.folder]).steps, [
+            ("Feature extraction", "a.log", 60, 1), ("Camera poses", "a.log", 120, 1),
+            ("b", "b.log", 150, 2)])
 
     def test_damaged_files(self):
         self.make()
@@ -330,21 +332,38 @@ class PageTest(PageCase):
 class BrowserTest(PageCase):
     """What a browser shows."""
 
-    def show(self):
+    def show(self, script=""):
+        """The page as pixels, after a script has used it."""
+        if script:
+            files.write_text(self.page, self.read("page.html").replace(
+                "</body>", f"<script>{script}</script></body>"))
         console = browser.take_picture(self.page, self.path("page.png"), 1000, 700)
         self.assertEqual([line for line in console if "GL Driver Message" not in line], [])
         return images.read_color(self.path("page.png"))[:, :, ::-1].astype(int)
 
+    def share_of_points(self, script=""):
+        """Of the pixels, by the colour."""
+        return (np.abs(self.show(script) - page_workspace.ORANGE) < 12).all(axis=2).mean()
+
     def test_points_are_drawn(self):
         self.make(ODD)
         self.make_page()
-        shown = self.show()
-        orange = (np.abs(shown - page_workspace.ORANGE) < 12).all(axis=2)
-        self.assertGreater(orange.mean(), 0.05)
+        self.assertGreater(self.share_of_points(), 0.05)
         os.remove(os.path.join(self.workspace, "fused.ply"))
         self.make_page()
-        shown = self.show()
-        self.assertLess((np.abs(shown - page_workspace.ORANGE) < 12).all(axis=2).mean(), 0.001)
+        self.assertLess(self.share_of_points(), 0.001)
+
+    def test_controls(self):
+        self.make(ODD)
+        self.make_page()
+        before = self.share_of_points()
+        self.assertGreater(self.share_of_points(
+            "document.querySelectorAll('button[data-view]')[1].click(); scrollTo(0, 0)"),
+            1.2 * before)
+        use = "input = document.querySelector('{}'); {}; input.dispatchEvent(new Event('input'))"
+        self.assertLess(self.share_of_points(
+            "let " + use.format(".confidence input", "input.value = 250")), 0.6 * before)
+        self.assertLess(self.share_of_points(use.format(".tint", "input.checked = true")), 0.001)
 
     def test_an_error_is_seen(self):
         files.write_text(self.page, "<script>nothing.here();</script>")
