@@ -8,6 +8,8 @@ import subprocess
 import sys
 import time
 
+from . import progress
+
 
 class Failure(Exception):
     """Something went wrong. Its text is one line for the user."""
@@ -99,7 +101,8 @@ def run(command, log):
         before = {number: signal.signal(number, hand_on)
                   for number in (signal.SIGINT, signal.SIGTERM)}
         try:
-            _, status, resources = os.wait4(process.pid, 0)
+            with progress.Follower(log):
+                _, status, resources = os.wait4(process.pid, 0)
         finally:
             for number, handler in before.items():
                 signal.signal(number, handler)

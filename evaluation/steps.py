@@ -7,6 +7,7 @@ that a command that was stopped goes on where it was when it is given again.
 
 import dataclasses
 import sys
+import time
 from typing import Callable
 
 from . import processes
@@ -61,7 +62,7 @@ def perform(jobs, dry_run=False):
 
     dry_run: prints the commands instead. Returns (name, message) of jobs that failed.
     """
-    jobs, failures = list(jobs), []
+    jobs, failures, begin = list(jobs), [], time.monotonic()
     for number, job in enumerate(jobs, 1):
         step, message = None, None
         try:
@@ -72,7 +73,8 @@ def perform(jobs, dry_run=False):
                     _print(step.commands())
                     continue
                 if not step.is_quick:
-                    processes.say(f"[{number}/{len(jobs)}] {job.name}: {step.name} ...")
+                    processes.say(f"[{number}/{len(jobs)}] {_clock(time.monotonic() - begin)}  "
+                                  f"{job.name}: {step.name} ...")
                 step.run()
         except processes.Interrupted:
             raise
@@ -84,6 +86,11 @@ def perform(jobs, dry_run=False):
         if not dry_run:
             job.note(message and step.name, message)
     return failures
+
+
+def _clock(seconds):
+    minutes, seconds = divmod(round(seconds), 60)
+    return f"{minutes // 60}:{minutes % 60:02d}:{seconds:02d}"
 
 
 def _print(commands):

@@ -7,16 +7,16 @@
 #                                   goes to OUT (PHOTOS-reconstruction beside it);
 #                                   OUT/result.html shows all of it in a browser
 #
-# Installs what is missing and builds first. A run that was stopped goes on
-# where it left off. Photographs are scaled down to at most MAX_IMAGE_SIZE (1600)
-# pixels before dense stereo. BUILD_DIR names another folder than build/.
+# Installs what is missing and builds the program first, unless TAPA_BIN_DIR names
+# the folder of one that is installed. A run that was stopped goes on where it left
+# off. Photographs are scaled down to at most MAX_IMAGE_SIZE (1600) pixels before
+# dense stereo. BUILD_DIR names another folder than build/.
 set -euo pipefail
 
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(dirname "$here")
 build=${BUILD_DIR:-$root/build}
-bin=$build/bin
-export TAPA_BIN_DIR=$bin
+bin=${TAPA_BIN_DIR:-$build/bin}
 
 fail() {
   echo "ERROR: $*" >&2
@@ -28,10 +28,20 @@ run() {
   "$@"
 }
 
+# run_quietly WHAT COUNT COMMAND...: its output goes into a log beside the results;
+# how far it is, of COUNT photographs, is shown.
+run_quietly() {
+  local what=$1 count=$2
+  shift 2
+  run "$@" | "$here/progress.sh" "$what" "$out/demo.log" "$count" ||
+    fail "this failed: $what; see $out/demo.log"
+}
+
 # Once with COLMAP's own algorithm, once with TAPA, which completes the walls.
 reconstruct_example() {
   local out=$build/demo
-  echo "It takes some minutes; $out/room/*/stereo.log tell how far it is." >&2
+  mkdir -p "$out"
+  echo "It takes some minutes on all cores and 0.4 GB in $out."
   run "$here/evaluate" "$root/examples/room" --out "$out" --num_views 3
   echo
   sed -n '/^## room/,/^!/ { /^!/d; p }' "$out/report.md" # Without its pictures.
@@ -71,15 +81,16 @@ reconstruct_sparse() {
     matcher=sequential_matcher
     echo "More than 200 photographs: each is matched with its neighbours in the order of names only."
   fi
-  run "$bin/colmap" feature_extractor --database_path "$out/database.db" \
-    --image_path "$photos" --image_list_path "$out/photographs.list" \
-    --SiftExtraction.use_gpu 0
-  run "$bin/colmap" "$matcher" --database_path "$out/database.db" \
-    --SiftMatching.use_gpu 0
+  run_quietly "Finding features" "$count" "$bin/colmap" feature_extractor \
+    --database_path "$out/database.db" --image_path "$photos" \
+    --image_list_path "$out/photographs.list" --SiftExtraction.use_gpu 0
+  run_quietly "Matching features" "$count" "$bin/colmap" "$matcher" \
+    --database_path "$out/database.db" --SiftMatching.use_gpu 0
   rm -rf "$out/sparse"
   mkdir -p "$out/sparse"
-  run "$bin/colmap" mapper --database_path "$out/database.db" \
-    --image_path "$photos" --output_path "$out/sparse"
+  run_quietly "Finding camera poses" "$count" "$bin/colmap" mapper \
+    --database_path "$out/database.db" --image_path "$photos" \
+    --output_path "$out/sparse"
   touch "$out/sparse.done"
 }
 
@@ -104,9 +115,9 @@ reconstruct_photos() {
   model=$(largest_model "$out/sparse") ||
     fail "no camera poses could be found; take the photographs with more overlap"
   if [[ ! -f $out/dense/undistorted.done ]]; then
-    run "$bin/colmap" image_undistorter --image_path "$photos" \
-      --input_path "$model" --output_path "$out/dense" \
-      --max_image_size "$size"
+    run_quietly "Undistorting photographs" "$count" "$bin/colmap" \
+      image_undistorter --image_path "$photos" --input_path "$model" \
+      --output_path "$out/dense" --max_image_size "$size"
     touch "$out/dense/undistorted.done"
   fi
   # A photograph that sees nothing from another angle is left out.
@@ -115,7 +126,7 @@ reconstruct_photos() {
     --PatchMatchStereo.tapa_debug "$out/dense/tapa_debug" | tee -ia "$out/dense/stereo.log"
   run "$bin/colmap" stereo_fusion --workspace_path "$out/dense" \
     --output_path "$out/dense/fused.ply" | tee -ia "$out/dense/fusion.log"
-  run "$bin/evaluate_depth_maps" --workspace_path "$out/dense" \
+  run "$here/evaluate_depth_maps" --workspace_path "$out/dense" \
     --pictures "$out/pictures"
   echo
   echo "Pictures: $out/pictures/"
@@ -125,7 +136,10 @@ reconstruct_photos() {
 }
 
 [[ $# -le 2 ]] || fail "usage: $(basename "$0") [PHOTOS [OUT]]"
-"$here/build.sh"
+if [[ -z ${TAPA_BIN_DIR:-} ]]; then
+  "$here/build.sh"
+fi
+export TAPA_BIN_DIR=$bin
 if [[ $# -eq 0 ]]; then
   reconstruct_example
 else

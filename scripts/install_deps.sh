@@ -1,15 +1,18 @@
 #!/usr/bin/env bash
-# Installs the Debian 12 packages that the project is built and tested with, as
-# far as they are missing: as root, or through sudo. Otherwise prints the
-# command to run. Does nothing, and asks nobody, when all are there.
+# Installs the Debian 12 packages that the project needs, as far as they are missing:
+# as root, or through sudo. Otherwise prints the command to run. Does nothing, and
+# asks nobody, when all are there.
+#
+#   scripts/install_deps.sh [GROUP]...
+#
+# GROUP: build (to build and test), evaluation (to run scripts/evaluate and the demo),
+# package (to make a .deb); if none is named, build and evaluation.
 set -euo pipefail
 
-packages=(
+here=$(cd "$(dirname "$0")" && pwd)
+build=(
   # Tools.
   g++ cmake ninja-build ccache git python3 python3-venv ca-certificates
-  # Scores and reports.
-  curl libjs-three p7zip-full python3-jinja2 python3-markdown python3-matplotlib
-  python3-numpy python3-opencv python3-pydantic python3-scipy
   # COLMAP.
   libboost-filesystem-dev libboost-graph-dev libboost-program-options-dev
   libboost-system-dev libboost-test-dev libceres-dev libcgal-dev libeigen3-dev
@@ -19,9 +22,29 @@ packages=(
   # The engine, the tests and the benchmarks.
   libbenchmark-dev libboost-context-dev libgtest-dev libhwy-dev libopencv-contrib-dev libopencv-dev
 )
-# Come along when something is installed, but are not missed: povray renders scenes of
-# examples/, and chromium looks at pages (their tests are skipped without them).
-optional=(povray chromium)
+evaluation=(
+  curl libjs-three p7zip-full python3 python3-jinja2 python3-markdown
+  python3-matplotlib python3-numpy python3-opencv python3-pydantic python3-scipy
+)
+package=(dpkg-dev file)
+# Come along with build when something is installed, but are not missed: povray renders
+# scenes of examples/, and chromium looks at pages (their tests are skipped without them).
+optional=()
+
+[[ $# -gt 0 ]] || set -- build evaluation
+packages=()
+for group in "$@"; do
+  case $group in
+    build) packages+=("${build[@]}") optional=(povray chromium) ;;
+    evaluation) packages+=("${evaluation[@]}") ;;
+    package) packages+=("${package[@]}") ;;
+    *)
+      echo "ERROR: there is no group $group; usage:" \
+        "$(basename "$0") [build|evaluation|package]..." >&2
+      exit 1
+      ;;
+  esac
+done
 
 if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
   echo "WARNING: This is no Debian: see to it yourself that there is what" \
@@ -30,30 +53,47 @@ if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
 fi
 
 missing=()
-for package in "${packages[@]}"; do
-  status=$(dpkg-query -W -f '${Status}' "$package" 2>/dev/null || true)
-  [[ $status == "install ok installed" ]] || missing+=("$package")
+for name in "${packages[@]}"; do
+  status=$(dpkg-query -W -f '${Status}' "$name" 2>/dev/null || true)
+  [[ $status == "install ok installed" ]] || missing+=("$name")
 done
 if [[ ${#missing[@]} -eq 0 ]]; then
   exit 0
 fi
 
 install=(apt-get install -y --no-install-recommends "${missing[@]}" "${optional[@]}")
-if [[ $(id -u) -eq 0 ]]; then
-  as_root=(env DEBIAN_FRONTEND=noninteractive)
-elif command -v sudo >/dev/null && { sudo -n true 2>/dev/null || [[ -t 0 ]]; }
-then
-  as_root=(sudo env DEBIAN_FRONTEND=noninteractive)
-else
-  echo "ERROR: Packages are missing. As root, run: apt-get update &&" \
-    "${install[*]}" >&2
-  exit 1
+as_root=(env DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8)
+if [[ $(id -u) -ne 0 ]]; then
+  if ! command -v sudo >/dev/null || ! { sudo -n true 2>/dev/null || [[ -t 0 ]]; }
+  then
+    echo "ERROR: Packages are missing. As root, run: apt-get update &&" \
+      "${install[*]}" >&2
+    exit 1
+  fi
+  as_root=(sudo "${as_root[@]}")
 fi
-echo "Installing ${#missing[@]} packages ..."
+
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
-if ! { "${as_root[@]}" apt-get update && "${as_root[@]}" "${install[@]}"; } \
-  >"$log" 2>&1; then
+# Runs a command of apt's. Its lines for programs, such as "pmstatus:g++:45.5:...",
+# tell how far it is.
+step() {
+  local what=$1
+  shift
+  "${as_root[@]}" "$@" -o APT::Status-Fd=1 2>&1 |
+    sed -u -E 's/^(dl|pm)status:.*:([0-9]+)\.[0-9]+:/[\2%] &/' |
+    "$here/progress.sh" "$what" "$log"
+}
+install() {
+  step "Reading the lists of packages" apt-get update || return
+  # What it takes, in apt's words.
+  "${as_root[@]}" "${install[@]}" --assume-no |
+    grep -E '^(Need to get|After this operation)'
+  step "Downloading packages" "${install[@]}" --download-only &&
+    step "Installing packages" "${install[@]}"
+}
+echo "Installing ${#missing[@]} packages and what they need ..."
+if ! install; then
   tail -n 20 "$log" >&2
   echo "ERROR: Packages could not be installed (see above). As root, run:" \
     "apt-get update && ${install[*]}" >&2

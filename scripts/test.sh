@@ -7,7 +7,7 @@
 set -euo pipefail
 
 here=$(cd "$(dirname "$0")" && pwd)
-"$here/build.sh"
+"$here/build.sh" all
 cd "${BUILD_DIR:-$here/../build}"
 
 [[ "$*" == *full_size* ]] || set -- -LE full_size "$@"
