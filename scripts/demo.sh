@@ -111,7 +111,7 @@ reconstruct_photos() {
   echo "$sums" >"$out/photographs.txt"
   echo "$list" >"$out/photographs.list"
 
-  reconstruct_sparse "$photos" "$out" "$count" | tee -ia "$out/sparse.log"
+  reconstruct_sparse "$photos" "$out" "$count"
   model=$(largest_model "$out/sparse") ||
     fail "no camera poses could be found; take the photographs with more overlap"
   if [[ ! -f $out/dense/undistorted.done ]]; then
