@@ -340,6 +340,19 @@ class Fusion(Workspace):
         self.expect_error("ghost.png")
 
 
+class Matching(tiny.TestCase):
+    """Nothing to match is said, with a way out."""
+
+    def test_database_without_photographs(self):
+        database = self.path("database.db")
+        self.assert_success(tiny.run(
+            [tiny.COLMAP, "database_creator", "--database_path", database]))
+        for matcher in "exhaustive_matcher", "sequential_matcher":
+            self.assert_one_error(
+                tiny.run([tiny.COLMAP, matcher, "--database_path", database,
+                          "--SiftMatching.use_gpu", "0"]), "feature_extractor")
+
+
 class Meshing(tiny.TestCase):
 
     def test_no_points(self):
