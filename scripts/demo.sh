@@ -7,10 +7,10 @@
 #                                   goes to OUT (PHOTOS-reconstruction beside it);
 #                                   OUT/result.html shows all of it in a browser
 #
-# Installs what is missing and builds the program first, unless TAPA_BIN_DIR names
-# the folder of one that is installed. A run that was stopped goes on where it left
-# off. Photographs are scaled down to at most MAX_IMAGE_SIZE (1600) pixels before
-# dense stereo. BUILD_DIR names another folder than build/.
+# Installs what is missing and builds the program first, unless TAPA_BIN_DIR names the
+# bin/ of another build. A run that was stopped goes on where it left off. Photographs
+# are scaled down to at most MAX_IMAGE_SIZE (1600) pixels before dense stereo. BUILD_DIR
+# names another folder than build/.
 set -euo pipefail
 
 here=$(cd "$(dirname "$0")" && pwd)
@@ -126,12 +126,12 @@ reconstruct_photos() {
     --PatchMatchStereo.tapa_debug "$out/dense/tapa_debug" | tee -ia "$out/dense/stereo.log"
   run "$bin/colmap" stereo_fusion --workspace_path "$out/dense" \
     --output_path "$out/dense/fused.ply" | tee -ia "$out/dense/fusion.log"
-  run "$here/evaluate_depth_maps" --workspace_path "$out/dense" \
+  run "$bin/evaluate_depth_maps" --workspace_path "$out/dense" \
     --pictures "$out/pictures"
   echo
   echo "Pictures: $out/pictures/"
   echo "Points:   $out/dense/fused.ply"
-  "$here/result_page" "$out/dense" --out "$out/result.html" ||
+  "$bin/result_page" "$out/dense" --out "$out/result.html" ||
     echo "WARNING: there is no page to show the result; $out has all of it."
 }
 
