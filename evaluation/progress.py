@@ -16,10 +16,12 @@ class Follower:
 
     def __init__(self, log):
         self._log = log
+        self._begin = 0
         self._end = threading.Event()
         self._thread = threading.Thread(target=self._follow, daemon=True)
 
     def __enter__(self):
+        self._begin = os.path.getsize(self._log)
         self._thread.start()
         return self
 
@@ -29,10 +31,10 @@ class Follower:
 
     def _follow(self):
         terminal = sys.stderr.isatty()
-        place, shown = os.path.getsize(self._log), b""
+        shown = b""
         while not self._end.wait(_TERMINAL_INTERVAL if terminal else _INTERVAL):
             with open(self._log, "rb") as file:
-                file.seek(place)
+                file.seek(self._begin)
                 lines = _LINE.findall(file.read())
             if lines and (terminal or lines[-1] != shown):
                 shown = lines[-1]
