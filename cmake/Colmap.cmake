@@ -46,6 +46,14 @@ mark_as_advanced(CUDA_ENABLED TESTS_ENABLED CCACHE_ENABLED BOOST_STATIC
   GUI_ENABLED)
 add_subdirectory(${colmap_dir} ${CMAKE_BINARY_DIR}/colmap EXCLUDE_FROM_ALL)
 
+# These leave dense stereo out where there is no CUDA; here it needs none.
+set_source_files_properties(
+  ${colmap_dir}/src/controllers/automatic_reconstruction.cc
+  ${colmap_dir}/src/exe/mvs.cc
+  ${colmap_dir}/src/ui/dense_reconstruction_widget.cc
+  TARGET_DIRECTORY colmap colmap_exe
+  PROPERTIES COMPILE_DEFINITIONS CUDA_ENABLED)
+
 # COLMAP declares what it compiles with per folder, not per target.
 get_directory_property(colmap_includes
   DIRECTORY ${colmap_dir} INCLUDE_DIRECTORIES)
