@@ -1,6 +1,7 @@
 // Speed of TAPA's stages at one megapixel next to naive references, in one run.
-// Superpixels and the drawing of planes have none: the first is OpenCV's, the
-// second one table look-up for every pixel.
+// Superpixels, the drawing of planes and sightings have none: the first is
+// OpenCV's, the second one table look-up for every pixel, and the third asks
+// every view about every pixel, as a reference would.
 
 #include <benchmark/benchmark.h>
 
@@ -11,6 +12,7 @@
 #include "src/mvs/camera_table.h"
 #include "src/mvs/sweep/random.h"
 #include "src/mvs/tapa/fill.h"
+#include "src/mvs/tapa/sightings.h"
 #include "src/mvs/tapa/speckles.h"
 #include "src/mvs/tapa/superpixel_planes.h"
 #include "src/mvs/tapa/superpixels.h"
@@ -121,6 +123,20 @@ void BM_FindNeighbors(benchmark::State& state) {
   }
 }
 BENCHMARK(BM_FindNeighbors)->Unit(benchmark::kMillisecond);
+
+// Where nothing is known, with ten source views: the most that it can take.
+void BM_Sightings(benchmark::State& state) {
+  SyntheticOptions options = Work::MakeOptions();
+  options.num_sources = 10;
+  const SyntheticPlane scene(options);
+  const Problem problem = scene.GeometricProblem();
+  const Map<float> nothing(kWidth, kHeight);
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(
+        FindSightings(Options(), problem, Control(), nothing, nothing));
+  }
+}
+BENCHMARK(BM_Sightings)->Unit(benchmark::kMillisecond);
 
 constexpr Continuity kContinuity = {0.5f, 0};
 constexpr int kMaxSpeckle = kWidth * kHeight / 5000;
