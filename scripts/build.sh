@@ -42,7 +42,7 @@ announce() {
   minutes=$((files * seconds_per_file / cores / 60 + 1))
   echo "Building ${targets[*]}: $files files to compile on $cores cores, at low" \
     "priority; about $minutes minutes, less for what ccache knows." \
-    "It takes up to 0.3 GB in $build, where $(df -h --output=avail "$build" |
+    "It takes up to 0.4 GB in $build, where $(df -h --output=avail "$build" |
       tail -n 1 | tr -d ' ') are free."
 }
 

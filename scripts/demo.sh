@@ -41,7 +41,7 @@ run_quietly() {
 reconstruct_example() {
   local out=$build/demo
   mkdir -p "$out"
-  echo "It takes some minutes on all cores and 0.4 GB in $out."
+  echo "It takes some minutes on all cores and 0.5 GB in $out."
   run "$here/evaluate" "$root/examples/room" --out "$out" --num_views 3
   echo
   sed -n '/^## room/,/^!/ { /^!/d; p }' "$out/report.md" # Without its pictures.

@@ -5,8 +5,8 @@
 #
 #   scripts/install_deps.sh [GROUP]...
 #
-# GROUP: build (to build and test), evaluation (to run scripts/evaluate and the demo),
-# package (to make a .deb); if none is named, build and evaluation.
+# GROUP: build (to build and test), evaluation (to run scripts/evaluate and the demo);
+# if none is named, both.
 set -euo pipefail
 
 here=$(cd "$(dirname "$0")" && pwd)
@@ -26,7 +26,6 @@ evaluation=(
   curl libjs-three p7zip-full python3 python3-jinja2 python3-markdown
   python3-matplotlib python3-numpy python3-opencv python3-pydantic python3-scipy
 )
-package=(dpkg-dev file)
 # Come along with build when something is installed, but are not missed: povray renders
 # scenes of examples/, and chromium looks at pages (their tests are skipped without them).
 optional=()
@@ -37,10 +36,9 @@ for group in "$@"; do
   case $group in
     build) packages+=("${build[@]}") optional=(povray chromium) ;;
     evaluation) packages+=("${evaluation[@]}") ;;
-    package) packages+=("${package[@]}") ;;
     *)
       echo "ERROR: there is no group $group; usage:" \
-        "$(basename "$0") [build|evaluation|package]..." >&2
+        "$(basename "$0") [build|evaluation]..." >&2
       exit 1
       ;;
   esac
