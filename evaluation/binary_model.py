@@ -5,7 +5,7 @@ import struct
 
 import numpy as np
 
-from . import files
+from . import colmap_model, files
 from .colmap_model import PARAMETERS, Camera, View, check_camera, rotation_of
 from .processes import Failure
 
@@ -35,41 +35,51 @@ class _Values:
         self._at += size
 
 
-def exists(folder):
-    return os.path.exists(os.path.join(folder, "images.bin"))
+def read_any(folder):
+    """Views of the model in a folder, of the binary one if there is one, as COLMAP does."""
+    if os.path.exists(os.path.join(folder, "images.bin")):
+        return read_views(folder)
+    return colmap_model.read_views(folder)
 
 
 def read_views(folder):
     """Views of the binary model in a folder, in the order of their names."""
-    path = os.path.join(folder, "cameras.bin")
+    cameras = _read_cameras(os.path.join(folder, "cameras.bin"))
+    path = os.path.join(folder, "images.bin")
     try:
-        cameras = _read_cameras(path)
-        path = os.path.join(folder, "images.bin")
-        views = _read_views(path, cameras)
-    except (struct.error, KeyError, ValueError) as error:
+        views = [View(number, name, cameras[camera], rotation_of(pose[:4]), np.array(pose[4:]))
+                 for number, pose, camera, name in read_images(path)]
+    except (KeyError, ValueError) as error:  # No such camera, no rotation.
         raise Failure(f"{path} is damaged") from error
     if not views:
         raise Failure(f"{path} holds no photograph")
     return sorted(views, key=lambda view: view.name)
 
 
+def read_images(path):
+    """Of every photograph in a file images.bin: its number, pose, camera and name."""
+    images = []
+    try:
+        values = _Values(path)
+        for _ in range(values.take("Q")[0]):
+            number, *pose, camera = values.take("i7di")
+            images.append((number, pose, camera, values.take_name()))
+            values.skip(24 * values.take("Q")[0])  # What it observes.
+    except (struct.error, ValueError) as error:
+        raise Failure(f"{path} is damaged") from error
+    return images
+
+
 def _read_cameras(path):
-    values, cameras = _Values(path), {}
-    for _ in range(values.take("Q")[0]):
-        number, model, width, height = values.take("iiQQ")
-        name = _MODELS.get(model, f"number {model}")
-        camera = Camera(name, width, height, values.take(f"{PARAMETERS.get(name, 0)}d"))
-        check_camera(camera, number, path)
-        cameras[number] = camera
+    cameras = {}
+    try:
+        values = _Values(path)
+        for _ in range(values.take("Q")[0]):
+            number, model, width, height = values.take("iiQQ")
+            name = _MODELS.get(model, f"number {model}")
+            camera = Camera(name, width, height, values.take(f"{PARAMETERS.get(name, 0)}d"))
+            check_camera(camera, number, path)
+            cameras[number] = camera
+    except struct.error as error:
+        raise Failure(f"{path} is damaged") from error
     return cameras
-
-
-def _read_views(path, cameras):
-    values, views = _Values(path), []
-    for _ in range(values.take("Q")[0]):
-        number, *pose, camera = values.take("i7di")
-        name = values.take_name()
-        views.append(View(number, name, cameras[camera], rotation_of(pose[:4]),
-                          np.array(pose[4:])))
-        values.skip(24 * values.take("Q")[0])  # What it observes.
-    return views

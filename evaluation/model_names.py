@@ -4,18 +4,16 @@ As a program it prints those of DATA/sparse that are in DATA/images, a line each
 """
 
 import os
-import struct
 import sys
 
-from . import command_line, files
-from .processes import Failure
+from . import binary_model, command_line, files
 
 
 def read_names(folder):
     """Names in the text or binary model in a folder, in any order; None where there is none."""
     binary, text = (os.path.join(folder, "images" + end) for end in (".bin", ".txt"))
     if os.path.exists(binary):
-        return _read_binary(binary)
+        return [name for *_, name in binary_model.read_images(binary)]
     if os.path.exists(text):
         lines = files.read_bytes(text).decode("utf-8-sig", errors="surrogateescape").split("\n")
         lines = [line.rstrip("\r") for line in lines if not line.startswith("#")]
@@ -30,21 +28,6 @@ def _name_in(line):
     if len(fields) == 10 and all(fields[:9]):
         return fields[9].rstrip()
     return line.split(maxsplit=9)[-1].strip()
-
-
-def _read_binary(path):
-    data = files.read_bytes(path)
-    names = []
-    try:
-        count, at = struct.unpack_from("<Q", data)[0], 8
-        for _ in range(count):
-            begin = at + 64
-            end = data.index(b"\0", begin)
-            names.append(os.fsdecode(data[begin:end]))
-            at = end + 9 + 24 * struct.unpack_from("<Q", data, end + 1)[0]
-    except (struct.error, ValueError) as error:
-        raise Failure(f"{path} is damaged") from error
-    return names
 
 
 def photographs(data):

@@ -26,12 +26,11 @@ def find(workspace, logs):
 
 def _why_without_maps(workspace, logs, name):
     """Of a photograph with a pose."""
-    listed = workspace.listed()
     if reason := logs.why_left_out(name):
         return reason
     if not os.path.exists(workspace.path("images", name)):
         return "its file is not in the folder images"
-    if listed is not None and name not in listed:
+    if workspace.listed is not None and name not in workspace.listed:
         return "stereo/patch-match.cfg does not list it"
     return "stereo has made no maps of it: it was stopped before, or left it out"
 

@@ -6,7 +6,7 @@ import os
 import re
 import urllib.parse
 
-from .. import binary_model, colmap_model, files, methods, pictures
+from .. import binary_model, files, methods, pictures
 from . import confidence, html, scene
 
 _POINTS = 1_000_000  # Of all sets together.
@@ -63,9 +63,7 @@ def _clouds(part):
 
 
 def _scene(part, paths, count):
-    model = os.path.join(part.experiment.data, "sparse")
-    read = binary_model if binary_model.exists(model) else colmap_model
-    viewer = scene.Scene(read.read_views(model))
+    viewer = scene.Scene(binary_model.read_any(os.path.join(part.experiment.data, "sparse")))
     labels = {path: label for label, path in paths.items()}
     scene.add_files(viewer, list(labels), count * len(labels), confidence.of_points,
                     lambda path: f"{labels[path]} ({os.path.basename(path)})")

@@ -1,9 +1,10 @@
 """What stands in a dense workspace of COLMAP, as far as the page shows it."""
 
+import functools
 import glob
 import os
 
-from .. import binary_model, colmap_model, files, workspaces
+from .. import binary_model, files, workspaces
 from ..processes import Failure
 
 _PASSES = ("geometric", "photometric")
@@ -18,9 +19,8 @@ class Workspace:
         if not os.path.isdir(model):
             raise Failure(f"{folder} is no dense workspace: it has no folder sparse; name a "
                           "folder such as DIR/dense or DIR/dense/0")
-        read = binary_model if binary_model.exists(model) else colmap_model
         # By name.
-        self.views = {view.name: view for view in read.read_views(model)}
+        self.views = {view.name: view for view in binary_model.read_any(model)}
         # Which maps there are, and those (workspaces.View).
         self.kind, self.maps = self._find_maps()
         self.clouds = sorted(path for path in self._files("fused*.ply")
@@ -50,6 +50,7 @@ class Workspace:
         return next((folder for folder in (parent, os.path.dirname(parent))
                      if os.path.isfile(os.path.join(folder, "database.db"))), "")
 
+    @functools.cached_property
     def listed(self):
         """Names of the photographs that stereo is to compute; None where no file says it."""
         path = self.path("stereo", "patch-match.cfg")
