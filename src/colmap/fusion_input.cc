@@ -3,13 +3,13 @@
 #include <glog/logging.h>
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <sstream>
 
 #include "src/base/failure.h"
 #include "src/base/map_files.h"
 #include "src/colmap/fatal_errors.h"
+#include "src/colmap/masks.h"
 #include "src/colmap/progress.h"
 #include "src/colmap/text_files.h"
 #include "src/colmap/views_record.h"
@@ -20,19 +20,6 @@ namespace {
 
 using colmap::ExistsFile;
 using colmap::JoinPaths;
-
-// Whether a map may belong to a photograph: of the same shape to a pixel, and
-// not larger.
-bool Fits(int width, int height, const SceneView& view) {
-  const double difference = std::abs(1.0 * width * view.photo_height -
-                                     1.0 * height * view.photo_width);
-  return width <= view.photo_width && height <= view.photo_height &&
-         difference <= std::max(view.photo_width, view.photo_height);
-}
-
-std::string SizeText(int width, int height) {
-  return std::to_string(width) + "x" + std::to_string(height);
-}
 
 class FusionInput {
  public:
@@ -56,7 +43,7 @@ class FusionInput {
       CheckMaps(scene_[index]);
     }
     CheckPoses(views);
-    CheckMasks(mask_path, views);
+    CheckMasks(mask_path, scene_, views);
     return views;
   }
 
@@ -149,7 +136,8 @@ class FusionInput {
       const auto [width, height] = ReadMapSize(depth_path, MapKind::kDepth);
       CheckMapFile(location_.MapPath(MapKind::kNormal, view.name, pass_, 0),
                    MapKind::kNormal, width, height);
-      if (!Fits(width, height, view)) {
+      if (width > view.photo_width || height > view.photo_height ||
+          !HaveSameShape(width, height, view.photo_width, view.photo_height)) {
         throw Failure(depth_path + " has " + SizeText(width, height) +
                       " pixels, which is not the shape of its photograph of " +
                       SizeText(view.photo_width, view.photo_height));
@@ -174,32 +162,6 @@ class FusionInput {
             "model has now; run patch_match_stereo again, or remove " +
             path + " to fuse them all the same");
       }
-    }
-  }
-
-  void CheckMasks(const std::string& mask_path,
-                  const std::vector<int>& views) const {
-    if (mask_path.empty()) {
-      return;
-    }
-    std::vector<std::string> missing;
-    for (const int index : views) {
-      const std::string name = scene_[index].name + ".png";
-      if (!ExistsFile(JoinPaths(mask_path, name))) {
-        missing.push_back(name);
-      }
-    }
-    if (missing.size() == views.size()) {
-      throw Failure("There are no masks in " + mask_path +
-                    "; they have the names of the images with .png after them, "
-                    "as in " +
-                    missing[0]);
-    }
-    if (!missing.empty()) {
-      PrintWarning(std::to_string(missing.size()) + " of " +
-                   std::to_string(views.size()) +
-                   " images have no mask and are fused as a whole; such as " +
-                   missing[0] + " is not in " + mask_path);
     }
   }
 

@@ -27,8 +27,8 @@ Pass FusionPass(const std::string& input_type);
 // those that the workspace's fusion.cfg lists and that have maps of the pass
 // and a photograph; it warns of others. Throws Failure if there are none, or if
 // there is anything wrong with them: maps that are damaged, that are not of the
-// shape of their photograph or that were made from other poses, and masks that
-// are not found.
+// shape of their photograph or that were made from other poses, and masks as
+// CheckMasks finds.
 std::vector<int> ViewsToFuse(const std::vector<SceneView>& views,
                              const WorkspaceLocation& location, Pass pass,
                              const std::string& mask_path);

@@ -5,9 +5,8 @@
 
 #include "src/base/failure.h"
 #include "src/colmap/fusion_input.h"
+#include "src/colmap/masks.h"
 #include "src/fusion/packed_normal.h"
-#include "util/bitmap.h"
-#include "util/misc.h"
 
 namespace tapa {
 namespace {
@@ -124,30 +123,13 @@ SurfaceMap FusionSource::ReadSurface(int index) const {
       pixel.depth = Dot(normal, normal) > 0 ? depth.At(from_row, from_col) : 0;
     }
   }
-  ApplyMask(view, &surface);
-  return surface;
-}
-
-void FusionSource::ApplyMask(const SceneView& view, SurfaceMap* surface) const {
-  const std::string path =
-      colmap::JoinPaths(options_.mask_path, view.name + ".png");
-  if (options_.mask_path.empty() || !colmap::ExistsFile(path)) {
-    return;
-  }
-  colmap::Bitmap mask;
-  if (!mask.Read(path, /* as_rgb */ false)) {
-    throw Failure("The mask " + path + " cannot be read");
-  }
-  mask.Rescale(view.width, view.height, FILTER_BOX);
-  for (int row = 0; row < view.height; ++row) {
-    for (int col = 0; col < view.width; ++col) {
-      colmap::BitmapColor<uint8_t> color;
-      mask.GetPixel(col, row, &color);
-      if (color.r == 0) {
-        surface->At(row, col).depth = 0;
-      }
+  const Map<uint8_t> mask = ReadMask(options_.mask_path, view);
+  for (size_t i = 0; i < mask.size(); ++i) {
+    if (mask.data()[i] != 0) {
+      surface.data()[i].depth = 0;
     }
   }
+  return surface;
 }
 
 }  // namespace tapa

@@ -38,8 +38,6 @@ class FusionSource {
   std::vector<std::vector<int>> Neighbors(
       const colmap::mvs::Model& model) const;
   SurfaceMap ReadSurface(int view) const;
-  // Removes the depth of pixels that the view's mask leaves out.
-  void ApplyMask(const SceneView& view, SurfaceMap* surface) const;
 
   const colmap::mvs::StereoFusionOptions& options_;
   const WorkspaceLocation location_;

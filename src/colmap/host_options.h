@@ -24,6 +24,7 @@ struct HostOptions {
   double geom_perturbation = 0.125;
   SearchOptions search;
   bool colmap_defaults = false;
+  std::string mask_path;
   TapaOptions tapa;
   std::string tapa_debug;
 };
@@ -81,6 +82,11 @@ void VisitHostOptions(Options* options, const Visitor& visit) {
          "num_iterations 5 in both passes, num_samples 15, window_step 1, all "
          "random changes and of full size; they cost several times as much "
          "(docs/results.md)");
+  // What counts is what is in them, see views_record.h.
+  option("mask_path", &o.mask_path, false,
+         "Folder of masks of the workspace's photographs, with the names of "
+         "these and .png after them: where they are black, nothing is "
+         "computed; empty: none");
   VisitTapaOptions(&o.tapa, visit);
   option("tapa_debug", &o.tapa_debug, false,
          "Folder for pictures of every step of TAPA for every view that the "

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// By name: what tells the photograph from others, see DescribePhoto.
+// By name: what tells the photograph from others, see DescribeFile.
 using Contents = std::map<std::string, std::string>;
 
 Contents ReadContents(const std::string& path) {
@@ -87,7 +87,7 @@ bool KeepPhotographs(const std::string& image_path,
     std::vector<std::string> others;
     for (const std::string& name : names) {
       const std::string content =
-          DescribePhoto(colmap::JoinPaths(image_path, name));
+          DescribeFile(colmap::JoinPaths(image_path, name));
       if (contents.emplace(name, content).first->second != content) {
         others.push_back(name);
       }

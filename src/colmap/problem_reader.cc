@@ -6,6 +6,7 @@
 #include <map>
 
 #include "src/base/map_files.h"
+#include "src/colmap/masks.h"
 #include "util/misc.h"
 
 namespace tapa {
@@ -130,6 +131,7 @@ std::unique_ptr<ProblemInput> ProblemReader::Read(
     to.depth = std::move(start.depth);
     to.normal = std::move(start.normal);
   }
+  to.mask = ReadMask(pass.options.mask_path, reference);
   if (pass.options.tapa.enabled) {
     input->color = ReadColorPhoto(reference);
     to.reference_color = &*input->color;

@@ -9,6 +9,7 @@
 
 #include "src/base/failure.h"
 #include "src/colmap/engine_options.h"
+#include "src/colmap/masks.h"
 #include "src/colmap/progress.h"
 #include "util/misc.h"
 
@@ -225,6 +226,14 @@ std::vector<PassPlan> Passes(const PatchMatchOptions& options,
   return passes;
 }
 
+void CheckMasksOf(const StereoPlan& plan, const std::string& folder) {
+  std::vector<int> views;
+  for (const ViewIndices& problem : plan.problems) {
+    views.push_back(problem.reference);
+  }
+  CheckMasks(folder, plan.views[0], views);
+}
+
 // A filter that asks for more views than there are makes do with all of them.
 void WarnOfFilter(const PatchMatchOptions& options, const StereoPlan& plan) {
   const auto num_needed =
@@ -374,11 +383,14 @@ void FindNeeded(StereoPlan* plan) {
 // What the maps of each problem are made from. views: at the size of their
 // photographs.
 ViewsRecord CurrentInputs(const StereoPlan& plan,
-                          const std::vector<SceneView>& views) {
-  std::map<int, std::string> photos;
+                          const std::vector<SceneView>& views,
+                          const std::string& mask_folder) {
+  std::map<int, ViewFiles> files;
   const auto describe = [&](int view) {
-    if (photos.count(view) == 0) {
-      photos[view] = DescribePhoto(views[view].image_path);
+    if (files.count(view) == 0) {
+      const std::string mask = MaskPath(mask_folder, views[view].name);
+      files[view] = {DescribeFile(views[view].image_path),
+                     mask.empty() ? "" : DescribeFile(mask)};
     }
   };
   ViewsRecord inputs;
@@ -386,7 +398,7 @@ ViewsRecord CurrentInputs(const StereoPlan& plan,
     describe(problem.reference);
     std::for_each(problem.sources.begin(), problem.sources.end(), describe);
     inputs[views[problem.reference].name] =
-        DescribeInputs(views, problem.reference, problem.sources, photos);
+        DescribeInputs(views, problem.reference, problem.sources, files);
   }
   return inputs;
 }
@@ -573,9 +585,10 @@ StereoPlan MakeStereoPlan(const PatchMatchOptions& options,
   AddHelpers(options, &plan);
   CheckDepthRanges(options, plan);
   WarnOfFilter(options, plan);
+  CheckMasksOf(plan, options.mask_path);
   plan.passes = Passes(options, plan);
-  const ViewsRecord inputs =
-      CurrentInputs(plan, SceneViews(model, /* max_image_size */ -1));
+  const ViewsRecord inputs = CurrentInputs(
+      plan, SceneViews(model, /* max_image_size */ -1), options.mask_path);
   CheckRecords(inputs, &plan);
   CheckMaps(&plan);
   FindNeeded(&plan);

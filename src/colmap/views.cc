@@ -3,6 +3,7 @@
 #include <FreeImage.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include "mvs/image.h"
@@ -80,6 +81,16 @@ std::vector<SceneView> SceneViews(const colmap::mvs::Model& model,
   return views;
 }
 
+bool HaveSameShape(int width, int height, int other_width, int other_height) {
+  const double difference =
+      std::abs(1.0 * width * other_height - 1.0 * height * other_width);
+  return difference <= std::max({width, height, other_width, other_height});
+}
+
+std::string SizeText(size_t width, size_t height) {
+  return std::to_string(width) + "x" + std::to_string(height);
+}
+
 colmap::Bitmap ReadBitmap(const std::string& path, bool in_color) {
   is_truncated = false;
   FreeImage_SetOutputMessage(&NoteMessage);
@@ -101,10 +112,9 @@ colmap::Bitmap ReadBitmap(const std::string& path, bool in_color, int width,
 void CheckPhotoSize(const std::string& path, size_t width, size_t height,
                     size_t camera_width, size_t camera_height) {
   if (width != camera_width || height != camera_height) {
-    throw Failure("The image " + path + " has " + std::to_string(width) + "x" +
-                  std::to_string(height) + " pixels, but its camera has " +
-                  std::to_string(camera_width) + "x" +
-                  std::to_string(camera_height) +
+    throw Failure("The image " + path + " has " + SizeText(width, height) +
+                  " pixels, but its camera has " +
+                  SizeText(camera_width, camera_height) +
                   "; take the photograph that the model was made from, or "
                   "scale it to that size");
   }

@@ -34,6 +34,12 @@ struct SceneView {
 std::vector<SceneView> SceneViews(const colmap::mvs::Model& model,
                                   int max_image_size, int level = 0);
 
+// Whether images of these sizes have the same ratio of their sides, to a pixel.
+bool HaveSameShape(int width, int height, int other_width, int other_height);
+
+// As in "640x480".
+std::string SizeText(size_t width, size_t height);
+
 // Reads a photograph. Throws Failure if it is missing or damaged, or, where a
 // size is given, if it has another than that of its camera.
 colmap::Bitmap ReadBitmap(const std::string& path, bool in_color);

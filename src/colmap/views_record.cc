@@ -19,8 +19,11 @@ namespace tapa {
 namespace {
 
 constexpr char kComment[] =
-    "# What the maps of this pass were made from: camera, photograph, names, "
-    "cameras and photographs of the sources, name of the view.\n";
+    "# What the maps of this pass were made from: camera, photograph (and "
+    "masks), names, cameras and photographs of the sources, name of the "
+    "view.\n";
+// Between photograph and masks.
+constexpr char kPlus = '+';
 
 std::string Hex(const Hash& hash) {
   char text[17];
@@ -35,6 +38,16 @@ std::string DescribeAll(const std::multiset<std::string>& texts) {
     hash.Add(text.c_str(), text.size() + 1);
   }
   return Hex(hash);
+}
+
+// Empty if there are none.
+std::string DescribeMasks(const std::string& own,
+                          const std::multiset<std::string>& of_sources) {
+  const bool has_masks =
+      !own.empty() ||
+      std::any_of(of_sources.begin(), of_sources.end(),
+                  [](const std::string& mask) { return !mask.empty(); });
+  return has_masks ? own + "of" + DescribeAll(of_sources) : "";
 }
 
 }  // namespace
@@ -55,7 +68,7 @@ std::string DescribeCamera(const SceneView& view) {
   return Hex(hash);
 }
 
-std::string DescribePhoto(const std::string& path) {
+std::string DescribeFile(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) {
     throw Failure("The image " + path +
@@ -73,22 +86,29 @@ std::string DescribePhoto(const std::string& path) {
 
 ViewInputs DescribeInputs(const std::vector<SceneView>& views, int reference,
                           const std::vector<int>& sources,
-                          const std::map<int, std::string>& photos) {
+                          const std::map<int, ViewFiles>& files) {
   std::multiset<std::string> names;
   std::multiset<std::string> cameras;
   std::multiset<std::string> source_photos;
+  std::multiset<std::string> source_masks;
   for (const int source : sources) {
     names.insert(views[source].name);
     cameras.insert(DescribeCamera(views[source]));
-    source_photos.insert(photos.at(source));
+    source_photos.insert(files.at(source).photo);
+    source_masks.insert(files.at(source).mask);
   }
-  return {DescribeCamera(views[reference]), photos.at(reference),
-          DescribeAll(names), DescribeAll(cameras), DescribeAll(source_photos)};
+  const ViewFiles& own = files.at(reference);
+  return {DescribeCamera(views[reference]),
+          own.photo,
+          DescribeAll(names),
+          DescribeAll(cameras),
+          DescribeAll(source_photos),
+          DescribeMasks(own.mask, source_masks)};
 }
 
 std::string DescribeDifference(const ViewInputs& recorded,
                                const ViewInputs& current) {
-  // Other sources have other cameras and photographs.
+  // Other sources have other cameras, photographs and masks.
   const bool same_sources = recorded.sources == current.sources;
   std::string text;
   const auto add = [&text](bool differs, const char* what) {
@@ -102,6 +122,7 @@ std::string DescribeDifference(const ViewInputs& recorded,
   add(recorded.photo != current.photo ||
           (same_sources && recorded.source_photos != current.source_photos),
       "photographs");
+  add(same_sources && recorded.masks != current.masks, "masks");
   add(!same_sources, "source images");
   return text;
 }
@@ -121,6 +142,11 @@ ViewsRecord ReadViewsRecord(const std::string& path) {
     ViewInputs inputs;
     fields >> inputs.camera >> inputs.photo >> inputs.sources >>
         inputs.source_cameras >> inputs.source_photos;
+    const size_t plus = inputs.photo.find(kPlus);
+    if (plus != std::string::npos) {
+      inputs.masks = inputs.photo.substr(plus + 1);
+      inputs.photo.resize(plus);
+    }
     std::string name;
     if (fields.get() != ' ' || !std::getline(fields, name)) {
       throw Failure(path +
@@ -139,9 +165,13 @@ ViewsRecord ReadViewsRecord(const std::string& path) {
 void WriteViewsRecord(const std::string& path, const ViewsRecord& record) {
   std::string text = kComment;
   for (const auto& [name, inputs] : record) {
+    // Without masks as before there were any.
+    const std::string photo = inputs.masks.empty()
+                                  ? inputs.photo
+                                  : inputs.photo + kPlus + inputs.masks;
     for (const std::string* field :
-         {&inputs.camera, &inputs.photo, &inputs.sources,
-          &inputs.source_cameras, &inputs.source_photos}) {
+         {&inputs.camera, &photo, &inputs.sources, &inputs.source_cameras,
+          &inputs.source_photos}) {
       text += *field + ' ';
     }
     text += name + "\n";

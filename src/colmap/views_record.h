@@ -9,7 +9,7 @@
 
 namespace tapa {
 
-// Maps do not say which poses, cameras and photographs they were made from. A
+// Maps do not say which poses, cameras, photographs and masks made them. A
 // small text file beside them does, one for each pass and a line for each view,
 // so that maps are not kept for those of another model.
 
@@ -23,6 +23,15 @@ struct ViewInputs {
   std::string sources;
   std::string source_cameras;
   std::string source_photos;
+  // Masks of the view and of its sources; empty: there are none.
+  std::string masks;
+};
+
+// What tells the files of a view from others, each by DescribeFile.
+struct ViewFiles {
+  std::string photo;
+  // Empty: there is none.
+  std::string mask;
 };
 
 // By the name of the view.
@@ -31,11 +40,11 @@ using ViewsRecord = std::map<std::string, ViewInputs>;
 // view: at the size of its photograph, which the maps need not have.
 std::string DescribeCamera(const SceneView& view);
 // By the content of the file. Throws Failure if it cannot be read.
-std::string DescribePhoto(const std::string& path);
-// views: as above. photos: of at least the given ones, by DescribePhoto.
+std::string DescribeFile(const std::string& path);
+// views: as above. files: of at least the given ones.
 ViewInputs DescribeInputs(const std::vector<SceneView>& views, int reference,
                           const std::vector<int>& sources,
-                          const std::map<int, std::string>& photos);
+                          const std::map<int, ViewFiles>& files);
 
 // Says what differs, for the user, as in "other poses or cameras"; empty:
 // nothing.

@@ -18,7 +18,10 @@ class Backend {
  public:
   virtual ~Backend() = default;
 
-  // Replaces the estimate of every pixel and computes its costs.
+  // Replaces the estimate of every pixel and computes its costs. Pixels of
+  // depth 0, whose normal is 0, too, are masked: sweeps leave them alone and
+  // take them for the border of the image. All others have an estimate until
+  // the last sweep, which may filter it.
   virtual bool SetEstimate(Map<float> depth, Map<Vec3> normal,
                            const ProgressCallback& progress) = 0;
 

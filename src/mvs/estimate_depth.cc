@@ -80,10 +80,14 @@ void CheckProblem(const Options& options, const Problem& problem) {
         "needs "
         "a depth and a normal map of the reference image's size");
   }
+  if (!problem.mask.empty() && !HasSize(problem.mask, image)) {
+    Fail("the mask has another size than the reference image");
+  }
 }
 
 // An estimation starts from the given maps, if there are any, and from random
-// planes where these have none. Returns false if stopped.
+// planes where these have none; masked pixels have none. Returns false if
+// stopped.
 bool InitializeEstimate(const Options& options, const Control& control,
                         Problem* problem) {
   const RefCamera camera = CameraTable(*problem).reference();
@@ -97,15 +101,19 @@ bool InitializeEstimate(const Options& options, const Control& control,
       return false;
     }
     for (int col = 0; col < image.width(); ++col) {
+      const size_t pixel = static_cast<size_t>(row) * image.width() + col;
       const Vec3 ray = camera.Ray(row, col);
       float& depth = problem->depth.At(row, col);
       Vec3& normal = problem->normal.At(row, col);
+      if (problem->IsMasked(pixel)) {
+        depth = 0;
+        normal = Vec3();
+        continue;
+      }
       if (IsDepth(depth) && Dot(normal, ray) < 0) {
         continue;
       }
-      const Random random(options.seed,
-                          static_cast<uint64_t>(row) * image.width() + col,
-                          kInitialSweep);
+      const Random random(options.seed, pixel, kInitialSweep);
       depth = RandomDepth(random, problem->depth_min, problem->depth_max);
       normal = RandomNormal(random, ray);
     }
@@ -192,7 +200,7 @@ std::optional<Estimate> EstimateDepth(const Options& options, Problem problem,
 
 size_t EstimateDepthMemory(const Options& options, const Problem& problem) {
   const size_t pixels = problem.reference.image->size();
-  return CpuBackendMemory(options, problem) +
+  return CpuBackendMemory(options, problem) + problem.mask.size() +
          (options.tapa.enabled ? pixels * kTapaBytesPerPixel : 0);
 }
 

@@ -1,6 +1,7 @@
 #ifndef TAPA_SRC_MVS_PROBLEM_H_
 #define TAPA_SRC_MVS_PROBLEM_H_
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -28,16 +29,25 @@ struct Problem {
   // at random. A photometric pass without them starts at random altogether.
   Map<float> depth;
   Map<Vec3> normal;
+  // Pixels of the reference image to leave alone, where it is not 0: they get
+  // no estimate, cost no time and lend nothing to others. Of the image's size,
+  // or empty: there are none. What source views show is not masked.
+  Map<uint8_t> mask;
+
+  // pixel: row * width + col.
+  bool IsMasked(size_t pixel) const {
+    return !mask.empty() && mask.data()[pixel] != 0;
+  }
 };
 
 // The result: what is known of every pixel of the reference view.
 struct Estimate {
-  // Depth in scene units, 0 where the estimate was filtered.
+  // Depth in scene units, 0 where the estimate was filtered or is masked.
   Map<float> depth;
-  // Unit normals in the reference camera's frame, 0 where filtered.
+  // Unit normals in the reference camera's frame, 0 where there is no depth.
   Map<Vec3> normal;
   // Probability that source view m sees a pixel, 0 to 1, at
-  // [pixel * sources + m], in fixed point: value / 65535.
+  // [pixel * sources + m], in fixed point: value / 65535. 0 where masked.
   UninitializedVector<uint16_t> selection_prob;
   // With Options::filter or TAPA: which source views are consistent with the
   // estimate, ConsistencyMaskBytes per pixel (sweep/consistency_mask.h). TAPA's

@@ -45,7 +45,7 @@ const std::vector<std::string>& TapaPictureNames();
 //   05_fine_planes        the colour of the plane's normal (color_map.h), as
 //   06_coarse_planes      bright as its inlier ratio, which is also written
 //                         down in %; black: no plane
-//   07_chosen_hypotheses  of the last sweep, by HypothesisColor
+//   07_chosen_hypotheses  of the last sweep, by HypothesisColor; black: masked
 //   08_swept_depth        after the last sweep
 //   09_filtered_depth     without unsupported estimates and speckles
 //   10_plane_agreement    of the best plane nearby; black: 0, white: 1

@@ -50,6 +50,35 @@ class Automatic(tiny.TestCase):
         self.assertGreater(
             self.num_points(os.path.join(self.dense, "fused.ply")), 0)
 
+    def test_masks_without_distortion_are_for_stereo_and_fusion(self):
+        with open(self.path("out", "sparse", "0", "cameras.txt"), "w") as file:
+            file.write("1 SIMPLE_RADIAL 96 64 100 48 32 0.3\n")
+        for name in self.names:
+            tiny.write_mask(self.path("masks", name + ".png"))
+        options = ("--use_gpu", "0", "--mask_path", self.path("masks"))
+        self.assert_success(self.reconstruct("low", options))
+        width, height, depths = tiny.read_map(tiny.map_path(
+            self.dense, self.names[0], which="photometric"))
+        # The photographs are smaller than those with distortion.
+        self.assertLess(width, 96)
+        for row in range(height):
+            self.assertFalse(any(depths[row * width:row * width + width // 2 - 2]))
+        self.assertTrue(any(depths))
+        self.assertEqual(
+            sorted(os.listdir(os.path.join(self.dense, "masks"))),
+            [name + ".png" for name in self.names])
+        self.assert_success(self.reconstruct("low", options))
+        # Others, and what is left to do.
+        for name in ("fused.ply", "meshed-poisson.ply"):
+            os.remove(os.path.join(self.dense, name))
+        tiny.write_mask(self.path("masks", self.names[0] + ".png"), border=0.25)
+        result = self.reconstruct("low", options)
+        self.assertEqual(result.returncode, 1, result.stdout)
+        self.assertIn("other masks", result.stdout)
+        shutil.rmtree(self.path("masks"))
+        self.assert_one_error(self.reconstruct("low", options),
+                              "no folder of masks")
+
     def test_other_options_than_before(self):
         result = self.reconstruct("low")
         self.assertEqual(result.returncode, 0, result.stdout)

@@ -17,12 +17,13 @@ def gpu(index):
 
 class EmulatedGpu(tiny.TestCase):
 
-    def stereo(self, name, workers, size=40, **environment):
+    def stereo(self, name, workers, size=40, masks="", **environment):
         """A run in a workspace of its own; size: of the images, as it is slow."""
         folder = self.path(name)
         self.names = tiny.make_workspace(folder, num_views=3)
         command = tiny.stereo_command(folder, tapa=1, num_threads=1,
-                                      max_image_size=size, **workers)
+                                      max_image_size=size, mask_path=masks,
+                                      **workers)
         result = tiny.run([os.environ["EMULATED_GPU_STEREO"]] + command[2:],
                           env=dict(os.environ, **environment))
         return result, folder
@@ -46,6 +47,18 @@ class EmulatedGpu(tiny.TestCase):
             self.assertGreater(right[0], 0.3)
             # Of a thousand pixels; rounding lets other draws win.
             self.assertGreater(right[1], right[0] - 0.05)
+
+    def test_masked_pixels_have_nothing(self):
+        for name in ("view%d.png" % i for i in range(3)):
+            tiny.write_mask(self.path("masks", name + ".png"))
+        result, folder = self.stereo("gpu", gpu("-1"), masks=self.path("masks"))
+        self.assert_success(result)
+        for name in self.names:
+            for kind in ("depth_maps", "normal_maps"):
+                width, _, values = tiny.read_map(tiny.map_path(folder, name, kind))
+                columns = [any(values[column::width]) for column in range(width)]
+                self.assertFalse(any(columns[:width // 2]))
+                self.assertGreater(sum(columns[width // 2:]), 0.6 * width / 2)
 
     def test_maps_do_not_depend_on_the_number_of_workers(self):
         expected, _ = self.maps("one", gpu("0"))

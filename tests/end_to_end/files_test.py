@@ -316,7 +316,8 @@ class Fusion(Workspace):
         self.expect_error("view1.png", "48x32", "96x64")
 
     def test_masks(self):
-        self.expect_error("no masks", "view0.png.png", mask_path=self.path("masks"))
+        self.expect_error("no folder of masks", "view0.png.png",
+                          mask_path=self.path("masks"))
         os.mkdir(self.path("masks"))
         tiny.write_png(self.path("masks/view0.png.png"), 96, 64, bytes(96 * 64))
         for rule in RULES:

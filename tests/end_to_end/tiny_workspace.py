@@ -84,6 +84,13 @@ def write_png(path, width, height, pixels, channels=1):
                    chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
 
 
+def write_mask(path, width=WIDTH, height=HEIGHT, border=0.5):
+    """Masks what is to the left of a share of the width."""
+    os.makedirs(os.path.dirname(path), exist_ok=True)
+    write_png(path, width, height, bytes(
+        0 if i % width < border * width else 255 for i in range(width * height)))
+
+
 def read_rgb_png(path):
     """Returns width, height and the filtered rows of a PNG of 8-bit colour.
 

@@ -253,6 +253,17 @@ class Pmvs(tiny.TestCase):
             self.assertLess(error, 0.01)
             self.assertGreater(share, 0.6)
 
+        shutil.rmtree(self.path("stereo-option-some"))
+        tiny.write_mask(self.path("masks", names[1] + ".png"))
+        self.assert_success(tiny.run_stereo(
+            self.folder, ["--workspace_format", "PMVS", "--pmvs_option_name",
+                          "option-some"], mask_path=self.path("masks")))
+        width, height, depths = tiny.read_map(tiny.map_path(
+            self.folder, names[1], stereo="stereo-option-some"))
+        self.assertTrue(any(depths))
+        for row in range(height):
+            self.assertFalse(any(depths[row * width:row * width + width // 2]))
+
     def test_no_pmvs_workspace(self):
         os.makedirs(self.path("visualize"))
         arguments = ["--workspace_format", "PMVS"]

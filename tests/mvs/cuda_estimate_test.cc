@@ -9,6 +9,7 @@
 #include "src/mvs/device_error.h"
 #include "src/mvs/devices.h"
 #include "src/mvs/estimate_depth.h"
+#include "tests/mvs/masked_half.h"
 #include "tests/mvs/synthetic.h"
 
 namespace tapa {
@@ -37,15 +38,20 @@ double ShareRight(const Options& options, const SyntheticPlane& scene) {
   return static_cast<double>(count) / scene.depth().size();
 }
 
+int FirstUsable(const DeviceList& list) {
+  int device = 0;
+  while (!list.devices[device].unusable.empty()) {
+    ++device;
+  }
+  return device;
+}
+
 TEST(CudaEstimate, IsAsGoodAsThatOfTheCpu) {
   const DeviceList list = FindDevices();
   if (!list.why_none.empty()) {
     GTEST_SKIP() << "NO GPU TEST RAN: " << list.why_none;
   }
-  int device = 0;
-  while (!list.devices[device].unusable.empty()) {
-    ++device;
-  }
+  const int device = FirstUsable(list);
   const SyntheticPlane scene = MakeScene();
   for (const bool tapa : {false, true}) {
     Options options;
@@ -60,6 +66,25 @@ TEST(CudaEstimate, IsAsGoodAsThatOfTheCpu) {
     // Chance moves the share by the inverse square root of the number of
     // pixels.
     EXPECT_GE(gpu, cpu - 0.02 / SceneScale());
+  }
+}
+
+TEST(CudaEstimate, TakesAMaskForTheBorderOfTheImage) {
+  const DeviceList list = FindDevices();
+  if (!list.why_none.empty()) {
+    GTEST_SKIP() << "NO GPU TEST RAN: " << list.why_none;
+  }
+  const SyntheticPlane scene{SyntheticOptions()};
+  for (const bool geometric : {false, true}) {
+    const MaskedHalf half(scene, geometric);
+    Options options;
+    options.geom_consistency = geometric;
+    options.num_iterations = 1;
+    options.device = FirstUsable(list);
+    const auto masked = EstimateDepth(options, half.masked());
+    const auto cut = EstimateDepth(options, half.cut());
+    ASSERT_TRUE(masked && cut);
+    EXPECT_EQ(MaskedHalf::Difference(*masked, *cut), "");
   }
 }
 

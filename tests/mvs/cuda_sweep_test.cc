@@ -38,6 +38,7 @@ struct CudaCase {
   int window_radius = 5;
   int window_step = 2;
   bool filter = false;
+  bool masked = false;
 
   friend void PrintTo(const CudaCase& c, std::ostream* out) { *out << c.name; }
 };
@@ -47,7 +48,7 @@ struct CudaScene {
   explicit CudaScene(const CudaCase& c)
       : scene(SceneOptions(c)),
         problem(c.geometric ? scene.GeometricProblem() : scene.problem()),
-        start(RoundNormals(StartNearTruth(scene))) {
+        start(MakeStart(c, scene)) {
     options.geom_consistency = c.geometric;
     options.filter = c.filter;
     options.window_radius = c.window_radius;
@@ -78,6 +79,21 @@ struct CudaScene {
     options.focal_length = 45;
     options.num_sources = c.num_sources;
     return options;
+  }
+
+  // With a mask: blocks that lines run into and out of, within pieces and at
+  // their ends.
+  static Start MakeStart(const CudaCase& c, const SyntheticPlane& scene) {
+    Start start = RoundNormals(StartNearTruth(scene));
+    for (int row = 0; row < start.depth.height() && c.masked; ++row) {
+      for (int col = 0; col < start.depth.width(); ++col) {
+        if (row / 6 % 3 == 1 && col / 5 % 2 == 0) {
+          start.depth.At(row, col) = 0;
+          start.normal.At(row, col) = Vec3();
+        }
+      }
+    }
+    return start;
   }
 
   const SyntheticPlane scene;
@@ -222,16 +238,19 @@ TEST_P(CudaSweepTest, AgreesWithCpu) {
 
 INSTANTIATE_TEST_SUITE_P(
     Problems, CudaSweepTest,
-    testing::Values(CudaCase{"Down"}, CudaCase{"Left", false, true, 5},
-                    CudaCase{"Up", true, false, 2},
-                    CudaCase{"Right", true, true, 11},
-                    CudaCase{"OneView", true, false, 4, 1},
-                    CudaCase{"ManyViews", false, false, 1, 35},
-                    CudaCase{"SmallWindow", true, true, 3, 6, 3, 1},
-                    CudaCase{"Step2", false, false, 4, 5, 10, 2},
-                    CudaCase{"FullWindow", true, true, 3, 5, 5, 1},
-                    CudaCase{"Filter", true, false, 6, 9, 5, 2, true},
-                    CudaCase{"FilterOneView", false, true, 7, 1, 5, 2, true}),
+    testing::Values(
+        CudaCase{"Down"}, CudaCase{"Left", false, true, 5},
+        CudaCase{"Up", true, false, 2}, CudaCase{"Right", true, true, 11},
+        CudaCase{"OneView", true, false, 4, 1},
+        CudaCase{"ManyViews", false, false, 1, 35},
+        CudaCase{"SmallWindow", true, true, 3, 6, 3, 1},
+        CudaCase{"Step2", false, false, 4, 5, 10, 2},
+        CudaCase{"FullWindow", true, true, 3, 5, 5, 1},
+        CudaCase{"Filter", true, false, 6, 9, 5, 2, true},
+        CudaCase{"FilterOneView", false, true, 7, 1, 5, 2, true},
+        CudaCase{"Masked", true, true, 8, 5, 5, 2, false, true},
+        CudaCase{"MaskedLeft", false, false, 9, 5, 5, 2, false, true},
+        CudaCase{"MaskedFilter", true, false, 6, 9, 5, 2, true, true}),
     [](const auto& info) { return info.param.name; });
 
 bool IsSame(const Outcome& a, const Outcome& b) {
@@ -242,8 +261,8 @@ bool IsSame(const Outcome& a, const Outcome& b) {
 
 // Whatever the turns of threads, blocks and streams are, and however many
 // pieces a launch sweeps: one, two of three, all.
-TEST(CudaSweep, MissesNoSync) {
-  const CudaScene s(CudaCase{"", true, true, 1, 6});
+void ExpectMissesNoSync(const CudaCase& c) {
+  const CudaScene s(c);
   for (const Kernel kernel :
        {Kernel::kUsual, Kernel::kPrecise, Kernel::kNaive}) {
     emulated_cuda::Settings settings;
@@ -254,6 +273,14 @@ TEST(CudaSweep, MissesNoSync) {
       EXPECT_TRUE(IsSame(RunOnGpu(s, kernel, settings), expected));
     }
   }
+}
+
+TEST(CudaSweep, MissesNoSync) {
+  ExpectMissesNoSync(CudaCase{"", true, true, 1, 6});
+}
+
+TEST(CudaSweep, MissesNoSyncBesideMaskedPixels) {
+  ExpectMissesNoSync(CudaCase{"", true, true, 1, 6, 5, 2, false, true});
 }
 
 // The kernel for common sizes computes what that for any sizes does.

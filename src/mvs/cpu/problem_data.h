@@ -47,6 +47,8 @@ struct SweepState {
   DepthNormal At(size_t pixel) const {
     return {depth.data()[pixel], normal.data()[pixel]};
   }
+  // As in Backend::SetEstimate; of a pixel that is yet to be swept.
+  bool IsMasked(size_t pixel) const { return depth.data()[pixel] == 0; }
 
   Map<float> depth;
   Map<Vec3> normal;

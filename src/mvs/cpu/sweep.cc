@@ -90,7 +90,15 @@ HWY_ATTR void DecodeCosts(const uint16_t* HWY_RESTRICT codes, int count,
   }
 }
 
-// Messages from the end of the line to every pixel on it.
+// Messages across what is not known, such as the ends of a line.
+HWY_ATTR void ResetMessages(const SourceCameras& views,
+                            float* HWY_RESTRICT messages) {
+  for (int m = 0; m < views.padded_count; ++m) {
+    messages[m] = ViewSelection::kBorderMessage;
+  }
+}
+
+// Messages from the end of the line to every pixel on it that is not masked.
 HWY_ATTR void ComputeBackwardMessages(const ProblemData& data,
                                       const SourceCameras& views,
                                       const SweepParams& params,
@@ -100,11 +108,13 @@ HWY_ATTR void ComputeBackwardMessages(const ProblemData& data,
   const int padded_count = views.padded_count;
   float* HWY_RESTRICT cost = scratch->pixel.cost;
   float* HWY_RESTRICT message = scratch->pixel.forward;
-  for (int m = 0; m < padded_count; ++m) {
-    message[m] = ViewSelection::kBorderMessage;
-  }
+  ResetMessages(views, message);
   for (int i = line.length - 1; i >= 0; --i) {
     const size_t pixel = data.Pixel(line.Row(i), line.Col(i));
+    if (state.IsMasked(pixel)) {
+      ResetMessages(views, message);
+      continue;
+    }
     DecodeCosts(state.cost.data() + pixel * views.count, views.count,
                 padded_count, cost);
     float* HWY_RESTRICT backward =
@@ -168,9 +178,7 @@ HWY_ATTR bool SweepOneLine(const ProblemData& data, const SweepParams& params,
   PixelScratch s = scratch->pixel;
 
   ComputeBackwardMessages(data, views, params, line, *state, scratch);
-  for (int m = 0; m < views.padded_count; ++m) {
-    s.forward[m] = ViewSelection::kBorderMessage;
-  }
+  ResetMessages(views, s.forward);
 
   PreviousPixel previous = {state->At(data.Pixel(line.row, line.col)),
                             camera.Ray(line.row, line.col)};
@@ -178,6 +186,12 @@ HWY_ATTR bool SweepOneLine(const ProblemData& data, const SweepParams& params,
     const int row = line.Row(i);
     const int col = line.Col(i);
     const size_t pixel = data.Pixel(row, col);
+    if (state->IsMasked(pixel)) {
+      // The next pixel has nothing to look back at.
+      ResetMessages(views, s.forward);
+      previous.estimate = DepthNormal();
+      continue;
+    }
     LoadPatch(data.window, data.reference, row, col, &scratch->patch);
     LoadPixel(*state, pixel, views, s);
     s.backward =
@@ -232,12 +246,18 @@ HWY_ATTR void ComputeCostsImpl(const ProblemData& data, int begin, int end,
   for (int row = begin; row < end; ++row) {
     for (int col = 0; col < data.width; ++col) {
       const size_t pixel = data.Pixel(row, col);
+      const size_t first = pixel * views.count;
+      uint16_t* cost = state->cost.data() + first;
+      uint16_t* prob = state->prob.data() + first;
+      if (state->IsMasked(pixel)) {
+        std::fill_n(cost, views.count, uint16_t{0});
+        std::fill_n(prob, views.count, uint16_t{0});
+        continue;
+      }
       const Vec3 h =
           HomographyVector(camera, state->At(pixel), camera.Ray(row, col));
       LoadPatch(data.window, data.reference, row, col, &scratch->patch);
-      const size_t first = pixel * views.count;
-      uint16_t* cost = state->cost.data() + first;
-      std::fill_n(state->prob.data() + first, views.count, EncodeProb(0.5f));
+      std::fill_n(prob, views.count, EncodeProb(0.5f));
       for (int m = 0; m < views.count; ++m) {
         cost[m] = EncodeCost(
             CorrelationCost(data.window, scratch->patch, data.sources[m],

@@ -95,8 +95,12 @@ class CudaBackend : public BackendForTesting {
   bool SetEstimate(Map<float> depth, Map<Vec3> normal,
                    const ProgressCallback& progress) override {
     std::vector<PackedDepthNormal> packed(plan_.pixels);
+    task_.has_masked = false;
     for (size_t i = 0; i < packed.size(); ++i) {
-      packed[i] = Pack({depth.data()[i], normal.data()[i]});
+      const bool is_masked = depth.data()[i] == 0;
+      task_.has_masked = task_.has_masked || is_masked;
+      packed[i] =
+          is_masked ? PackNothing() : Pack({depth.data()[i], normal.data()[i]});
     }
     estimates_.Upload(packed.data(), packed.size());
     is_downloaded_ = false;

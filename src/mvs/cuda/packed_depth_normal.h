@@ -16,8 +16,8 @@ namespace tapa {
 // 11x11 window.
 struct alignas(8) PackedDepthNormal {
   float depth;
-  // No valid normal has this code: it stands for 0, of estimates that were
-  // filtered.
+  // No valid normal has the code kNoNormal: it stands for 0, where there is no
+  // estimate.
   uint32_t normal;
 };
 
@@ -54,6 +54,9 @@ TAPA_INLINE Vec3 UnpackNormal(uint32_t code) {
                   v >= 0.0f ? v - fold : v + fold, z};
   return (1.0f / sqrtf(Dot(n, n))) * n;
 }
+
+// Of a pixel without an estimate.
+TAPA_INLINE PackedDepthNormal PackNothing() { return {0.0f, kNoNormal}; }
 
 TAPA_INLINE PackedDepthNormal Pack(const DepthNormal& estimate) {
   return {estimate.depth, PackNormal(estimate.normal)};

@@ -13,6 +13,16 @@
 
 namespace tapa {
 
+// The backward message of a pixel, given that of the one after it.
+TAPA_INLINE float BackwardMessage(const SweepTask& task, size_t pixel, int m,
+                                  float next) {
+  if (task.IsMasked(pixel)) {
+    return ViewSelection::kBorderMessage;
+  }
+  const float cost = DecodeCost(task.cost[pixel * task.num_views + m]);
+  return ViewSelection::Backward(task.params.selection.Emission(cost), next);
+}
+
 // Computes the checkpoints of a line.
 template <class Lanes>
 TAPA_INLINE void ComputeCheckpoints(const SweepTask& task, int index) {
@@ -21,9 +31,8 @@ TAPA_INLINE void ComputeCheckpoints(const SweepTask& task, int index) {
   for (int m = Lanes::First(); m < n; m += Lanes::Step()) {
     float message = ViewSelection::kBorderMessage;
     for (int i = line.length - 1; i >= task.piece_length; --i) {
-      const size_t at = task.Pixel(line.Row(i), line.Col(i)) * n + m;
-      message = ViewSelection::Backward(
-          task.params.selection.Emission(DecodeCost(task.cost[at])), message);
+      message = BackwardMessage(task, task.Pixel(line.Row(i), line.Col(i)), m,
+                                message);
       if (i % task.piece_length == 0) {
         const size_t piece = i / task.piece_length - 1;
         task.checkpoints[(piece * task.NumLines() + index) * n + m] = message;
@@ -48,9 +57,8 @@ TAPA_INLINE void ComputeBackwardMessages(const SweepTask& task,
             ? ViewSelection::kBorderMessage
             : task.checkpoints[(piece * task.NumLines() + index) * n + m];
     for (int i = end - 1; i >= begin; --i) {
-      const size_t at = task.Pixel(line.Row(i), line.Col(i)) * n + m;
-      message = ViewSelection::Backward(
-          task.params.selection.Emission(DecodeCost(task.cost[at])), message);
+      message = BackwardMessage(task, task.Pixel(line.Row(i), line.Col(i)), m,
+                                message);
       backward[(i - begin) * n + m] = message;
     }
   }
@@ -88,9 +96,8 @@ TAPA_INLINE void StorePixel(const SweepTask& task, size_t pixel,
     }
   }
   if (Lanes::First() == 0) {
-    task.estimates[pixel] = choice.is_consistent
-                                ? Pack(choice.estimate)
-                                : PackedDepthNormal{0.0f, kNoNormal};
+    task.estimates[pixel] =
+        choice.is_consistent ? Pack(choice.estimate) : PackNothing();
   }
   if (task.params.check_consistency) {
     Lanes::Sync();
@@ -109,6 +116,14 @@ TAPA_INLINE PreviousPixel SweepTaskPixel(const SweepTask& task,
                                          const PixelScratch& s) {
   const size_t pixel = task.Pixel(row, col);
   const int n = task.num_views;
+  const Vec3 ray = task.camera.Ray(row, col);
+  if (task.IsMasked(pixel)) {
+    // The next pixel has nothing to look back at.
+    for (int m = Lanes::First(); m < n; m += Lanes::Step()) {
+      s.forward[m] = ViewSelection::kBorderMessage;
+    }
+    return {DepthNormal(), ray};
+  }
   const PatchStatistics patch =
       LoadPatch<Lanes, Sizes>(task.window, textures, row, col, samples);
   for (int m = Lanes::First(); m < n; m += Lanes::Step()) {
@@ -119,7 +134,6 @@ TAPA_INLINE PreviousPixel SweepTaskPixel(const SweepTask& task,
   float* const flags = s.cdf;
   PixelSources<Lanes, Sizes, Textures> sources(task.window, textures, samples,
                                                patch, flags);
-  const Vec3 ray = task.camera.Ray(row, col);
   const PixelContext context = {
       task.params,
       task.camera,
@@ -201,6 +215,13 @@ TAPA_INLINE void InitializePixel(const SweepTask& task,
                                  float* words) {
   const size_t pixel = task.Pixel(row, col);
   const int n = task.num_views;
+  if (task.IsMasked(pixel)) {
+    for (int m = Lanes::First(); m < n; m += Lanes::Step()) {
+      task.cost[pixel * n + m] = 0;
+      task.prob[pixel * n + m] = 0;
+    }
+    return;
+  }
   PatchSample* samples;
   ArrangeScratch<Lanes, Sizes>(task.window, n, words, &samples);
   const PatchStatistics patch =

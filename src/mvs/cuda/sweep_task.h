@@ -27,10 +27,13 @@ struct SweepTask {
   const float* cameras = nullptr;
 
   PackedDepthNormal* estimates = nullptr;
+  // Whether there are masked pixels, so that others need not ask.
+  bool has_masked = false;
   // As in SweepState, at [pixel * n + m]. In the sweep that checks consistency,
   // the last one, a cost is not needed any more once its pixel is done: the
   // pixel's place then holds its bits of Estimate::consistent, and in the byte
-  // after them its Estimate::chosen. That saves an allocation.
+  // after them its Estimate::chosen. That saves an allocation. Of a masked
+  // pixel all is 0 from the start.
   uint16_t* cost = nullptr;
   uint16_t* prob = nullptr;
 
@@ -65,6 +68,10 @@ struct SweepTask {
   }
   TAPA_INLINE size_t Pixel(int row, int col) const {
     return static_cast<size_t>(row) * width + col;
+  }
+  // As in Backend::SetEstimate; of a pixel that is yet to be swept.
+  TAPA_INLINE bool IsMasked(size_t pixel) const {
+    return has_masked && estimates[pixel].depth == 0.0f;
   }
 };
 

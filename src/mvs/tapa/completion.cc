@@ -147,7 +147,8 @@ LocalPlanes FindLocalPlanes(const Problem& problem, const RefCamera& camera,
     const EstimateCounts counts(camera, depth, segmentation, label, box);
     for (int row = box.top; row < box.bottom; ++row) {
       for (int col = box.left; col < box.right; ++col) {
-        if (labels.At(row, col) != label) {
+        const size_t pixel = static_cast<size_t>(row) * labels.width() + col;
+        if (labels.At(row, col) != label || problem.IsMasked(pixel)) {
           continue;
         }
         const DepthNormal plane = PlaneAt(fitted.plane, camera.Ray(row, col));

@@ -35,9 +35,9 @@ struct LocalPlanes {
 
 // The plane of each pixel's own superpixel. radius: half size of the square
 // around a pixel whose estimates count, in pixels. Planes outside of the
-// problem's range of depths are left out. depth: estimates to trust. Time is
-// linear in the number of pixels in the superpixels' bounding boxes and does
-// not depend on the radius.
+// problem's range of depths are left out, and masked pixels get none. depth:
+// estimates to trust. Time is linear in the number of pixels in the
+// superpixels' bounding boxes and does not depend on the radius.
 LocalPlanes FindLocalPlanes(const Problem& problem, const RefCamera& camera,
                             const Map<float>& depth,
                             const Segmentation& segmentation, int radius);

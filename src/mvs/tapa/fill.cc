@@ -115,14 +115,18 @@ struct Fill {
 };
 
 // What the missing pixels become, as the maps are.
-std::vector<Fill> FindFills(const Weights& weights, double min_size,
+std::vector<Fill> FindFills(const FillOptions& options, const Weights& weights,
                             const RefCamera& camera, const Map<uint8_t>& image,
                             const Map<float>& depth, const Map<Vec3>& normal) {
+  const double min_size =
+      options.min_share * (2 * options.radius + 1) * (2 * options.radius + 1);
+  const bool has_mask = options.mask != nullptr && !options.mask->empty();
   std::vector<Fill> fills;
   std::vector<Sample> samples;
   for (int row = 0; row < image.height(); ++row) {
     for (int col = 0; col < image.width(); ++col) {
-      if (IsDepth(depth.At(row, col))) {
+      if (IsDepth(depth.At(row, col)) ||
+          (has_mask && options.mask->At(row, col) != 0)) {
         continue;
       }
       CollectSamples(weights, image, depth, normal, row, col, &samples);
@@ -145,11 +149,9 @@ void FillMissing(const FillOptions& options, const RefCamera& camera,
                  const Map<uint8_t>& image, Map<float>* depth,
                  Map<Vec3>* normal) {
   const Weights weights(options);
-  const double min_size =
-      options.min_share * (2 * options.radius + 1) * (2 * options.radius + 1);
   for (int round = 0; round < options.num_rounds; ++round) {
     const std::vector<Fill> fills =
-        FindFills(weights, min_size, camera, image, *depth, *normal);
+        FindFills(options, weights, camera, image, *depth, *normal);
     if (fills.empty()) {
       break;
     }

@@ -15,6 +15,9 @@ struct FillOptions {
   int num_rounds = 1;
   // Share of the whole window's pixels that the fullest bin has to hold.
   double min_share = 0;
+  // Pixels that stay as they are, as in Problem::mask; not there: none.
+  // Borrowed.
+  const Map<uint8_t>* mask = nullptr;
   // Standard deviations of the weights: over distance in pixels, and over
   // difference in intensity (0 to 1).
   float sigma_spatial = 5;

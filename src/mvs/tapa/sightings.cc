@@ -129,6 +129,11 @@ Map<float> FindSightings(const Options& options, const Problem& problem,
       witness.Add(row, min_num_views, known, &sightings);
     }
   }
+  for (size_t i = 0; i < problem.mask.size(); ++i) {
+    if (problem.IsMasked(i)) {
+      sightings.data()[i] = 0;
+    }
+  }
   return sightings;
 }
 

@@ -11,8 +11,8 @@
 
 namespace tapa {
 
-// Depths, in the reference view, of what source views see at pixels where
-// `known` has no depth: their estimates that at least
+// Depths, in the reference view, of what source views see at pixels that are
+// not masked and where `known` has no depth: their estimates that at least
 // options.filter_min_num_consistent other views are consistent with, the
 // reference view with its depths `swept` among them, under the filter's
 // conditions. Of several the nearest; 0 where there is none. Source views need

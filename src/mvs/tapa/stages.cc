@@ -7,6 +7,7 @@
 #include "src/base/depth.h"
 #include "src/mvs/camera_table.h"
 #include "src/mvs/sweep/consistency_mask.h"
+#include "src/mvs/sweep/hypotheses.h"
 #include "src/mvs/tapa/completion.h"
 #include "src/mvs/tapa/fill.h"
 #include "src/mvs/tapa/sightings.h"
@@ -105,6 +106,11 @@ void TapaStages::Refine(Estimate* estimate) {
   Map<float>& depth = estimate->depth;
   if (control_.record != nullptr) {
     record_.chosen = std::move(estimate->chosen);
+    for (size_t i = 0; i < problem_.mask.size(); ++i) {
+      if (problem_.IsMasked(i)) {
+        record_.chosen.data()[i] = kNumHypotheses;
+      }
+    }
     record_.swept_depth = depth;
   }
   if (!options_.tapa.refinement || control_.IsStopped()) {
@@ -191,6 +197,7 @@ void TapaStages::Complete(const Map<float>& evidence, const Map<float>& trusted,
 
 void TapaStages::Fill(Estimate* estimate) const {
   FillOptions fill;
+  fill.mask = &problem_.mask;
   fill.radius = options_.tapa.fill_radius;
   fill.num_rounds = options_.tapa.fill_rounds;
   if (options_.tapa.completion) {

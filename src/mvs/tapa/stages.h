@@ -20,7 +20,8 @@ struct TapaRecord {
   // Without superpixels where that part is off.
   Segmentation fine;
   Segmentation coarse;
-  // Hypothesis (sweep/hypotheses.h) that each pixel chose in the last sweep.
+  // Hypothesis (sweep/hypotheses.h) that each pixel chose in the last sweep;
+  // kNumHypotheses where masked.
   Map<uint8_t> chosen;
   // Depth after the last sweep.
   Map<float> swept_depth;
