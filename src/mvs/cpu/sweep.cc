@@ -90,15 +90,7 @@ HWY_ATTR void DecodeCosts(const uint16_t* HWY_RESTRICT codes, int count,
   }
 }
 
-// Messages across what is not known, such as the ends of a line.
-HWY_ATTR void ResetMessages(const SourceCameras& views,
-                            float* HWY_RESTRICT messages) {
-  for (int m = 0; m < views.padded_count; ++m) {
-    messages[m] = ViewSelection::kBorderMessage;
-  }
-}
-
-// Messages from the end of the line to every pixel on it that is not masked.
+// Messages from the end of the line to every pixel on it.
 HWY_ATTR void ComputeBackwardMessages(const ProblemData& data,
                                       const SourceCameras& views,
                                       const SweepParams& params,
@@ -108,13 +100,11 @@ HWY_ATTR void ComputeBackwardMessages(const ProblemData& data,
   const int padded_count = views.padded_count;
   float* HWY_RESTRICT cost = scratch->pixel.cost;
   float* HWY_RESTRICT message = scratch->pixel.forward;
-  ResetMessages(views, message);
+  for (int m = 0; m < padded_count; ++m) {
+    message[m] = ViewSelection::kBorderMessage;
+  }
   for (int i = line.length - 1; i >= 0; --i) {
     const size_t pixel = data.Pixel(line.Row(i), line.Col(i));
-    if (state.IsMasked(pixel)) {
-      ResetMessages(views, message);
-      continue;
-    }
     DecodeCosts(state.cost.data() + pixel * views.count, views.count,
                 padded_count, cost);
     float* HWY_RESTRICT backward =
@@ -178,7 +168,9 @@ HWY_ATTR bool SweepOneLine(const ProblemData& data, const SweepParams& params,
   PixelScratch s = scratch->pixel;
 
   ComputeBackwardMessages(data, views, params, line, *state, scratch);
-  ResetMessages(views, s.forward);
+  for (int m = 0; m < views.padded_count; ++m) {
+    s.forward[m] = ViewSelection::kBorderMessage;
+  }
 
   PreviousPixel previous = {state->At(data.Pixel(line.row, line.col)),
                             camera.Ray(line.row, line.col)};
@@ -186,12 +178,6 @@ HWY_ATTR bool SweepOneLine(const ProblemData& data, const SweepParams& params,
     const int row = line.Row(i);
     const int col = line.Col(i);
     const size_t pixel = data.Pixel(row, col);
-    if (state->IsMasked(pixel)) {
-      // The next pixel has nothing to look back at.
-      ResetMessages(views, s.forward);
-      previous.estimate = DepthNormal();
-      continue;
-    }
     LoadPatch(data.window, data.reference, row, col, &scratch->patch);
     LoadPixel(*state, pixel, views, s);
     s.backward =
@@ -231,8 +217,20 @@ void SweepLinesImpl(const ProblemData& data, const SweepParams& params,
   for (int index = begin; index < end; ++index) {
     const SweepLine line =
         LineOf(params.SweepDirection(), index, data.width, data.height);
-    if (!SweepOneLine(data, params, guide, line, &check, state, scratch)) {
-      return;
+    // Masked pixels cut it into lines of their own.
+    const auto is_masked = [&](int i) {
+      return state->IsMasked(data.Pixel(line.Row(i), line.Col(i)));
+    };
+    for (int first = 0, last = 0; first < line.length; first = last + 1) {
+      for (last = first; last < line.length && !is_masked(last);) {
+        ++last;
+      }
+      const SweepLine part = {line.Row(first), line.Col(first), line.row_step,
+                              line.col_step, last - first};
+      if (last > first &&
+          !SweepOneLine(data, params, guide, part, &check, state, scratch)) {
+        return;
+      }
     }
   }
 }
