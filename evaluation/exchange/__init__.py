@@ -2,7 +2,8 @@
 
     convert_maps.py  the program
     exporting.py     all views of a workspace into a folder
-    importing.py     files of any program into the maps of a workspace
+    sources.py       files of any program as depth and normals of views
+    importing.py     these into the maps of a workspace
     formats.py       numbers and normals per pixel in EXR, PFM, 16-bit PNG and NPY
     exr_channels.py  what a channel of an EXR file is called
     layout.py        names of files, and the text beside them that says what they mean

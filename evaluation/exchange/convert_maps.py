@@ -8,7 +8,7 @@ that stereo_fusion takes; depth is enough. docs/interchange.md explains both.
 import argparse
 
 from .. import command_line, files
-from . import confidences, exporting, formats, importing
+from . import confidences, exporting, formats, importing, sources
 
 
 def _parse(words):
@@ -63,7 +63,7 @@ def _export(arguments):
 
 def _import(arguments):
     target = importing.Target(arguments.workspace_path, arguments.overwrite)
-    source = importing.Source(arguments.input_path, arguments.depth_scale, arguments.resize)
+    source = sources.Source(arguments.input_path, arguments.depth_scale, arguments.resize)
     print(f"{arguments.workspace_path}: {importing.import_maps(source, target)}")
 
 

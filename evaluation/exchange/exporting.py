@@ -42,9 +42,7 @@ class Export:
         for maps in workspaces.list_views(self._workspace.folder, self._input_type):
             view = self._workspace.views.get(maps.name)
             tasks.append(_Task(maps, view)) if view else unknown.append(maps.name)
-        if unknown:
-            processes.say(f"WARNING: {len(unknown)} maps, such as of {unknown[0]}, are of no "
-                          "photograph of the sparse model; they are left out")
+        layout.warn(unknown, "maps are of no photograph of the sparse model and left out")
         if not tasks:
             raise Failure(f"no map in {self._workspace.path('stereo')} is of a photograph of the "
                           "sparse model; name the workspace that they were made in")
@@ -76,9 +74,7 @@ class Export:
                 self._write_numbers(folder, layout.CONFIDENCE, task,
                                     self._confidence.of_view(task.view, depth))
             cameras[task.view.name] = task.view.camera.resized(*depth.shape[::-1])
-        if without_normals:
-            processes.say(f"WARNING: {len(without_normals)} views, such as {without_normals[0]}, "
-                          "have no normals")
+        layout.warn(without_normals, "views have no normals")
         layout.write_record(folder, self._extension, self._input_type, cameras, self._scales,
                             self._confidence and self._confidence.meaning)
         return self._summary()

@@ -8,7 +8,7 @@
 import os
 from typing import Optional
 
-from .. import files, schemas
+from .. import files, processes, schemas
 from ..processes import Failure
 
 DEPTH, NORMALS, CONFIDENCE = "depth", "normals", "confidence"
@@ -31,6 +31,12 @@ def read_record(folder):
     return files.read_json(record_path(folder), Record) or Record()
 
 
+def warn(names, what):
+    """Says what there is to say of these files or photographs, if there are any."""
+    if names:
+        processes.say(f"WARNING: {len(names)} {what}, such as {names[0]}")
+
+
 def check_names(views):
     """Raises Failure if the name of a photograph would lead out of a folder of maps."""
     for view in views:
@@ -40,7 +46,7 @@ def check_names(views):
 
 
 def write_record(folder, extension, input_type, cameras, scales, confidence):
-    """cameras: of each map's size, by name; scales: by kind, of PNG only; confidence: what it is."""
+    """cameras: of each map's size, by name; scales: of PNG, by kind; confidence: what it is."""
     def stored(kind):
         return f"value / {kind}_scale" if kind in scales else "value"
 

@@ -80,8 +80,10 @@ def read_graph(path):
         counts, at = np.zeros((height, width), np.float32), 0
         while at < len(words):
             column, row, count = words[at:at + 3]
+            if min(column, row, count) < 0:
+                raise ValueError
             counts[row, column] = count
-            at += 3 + max(count, 0)
+            at += 3 + count
     except (AttributeError, ValueError, IndexError, MemoryError) as error:
         raise Failure(f"{path} is not a consistency graph of COLMAP, or damaged; remove it to "
                       "go on without it") from error

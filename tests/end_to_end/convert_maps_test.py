@@ -75,6 +75,20 @@ class ConvertMaps(tiny.TestCase):
         self.assertEqual(*(tiny.read_map(tiny.map_path(workspace, NAMES[1]))
                            for workspace in (self.here, self.there)))
 
+    def test_stereo_computes_the_rest(self):
+        """A depth that another program knows stays what it is among maps of stereo."""
+        self.export("npy")
+        for name in NAMES[1:]:
+            os.remove(self.path("npy", "depth", name + ".npy"))
+        self.assert_success(self.importing("npy"))
+        imported = tiny.read_map(tiny.map_path(self.there, NAMES[0]))
+        self.assert_success(tiny.run_stereo(self.there, seed=7))
+        self.assertEqual(imported, tiny.read_map(tiny.map_path(self.there, NAMES[0])))
+        self.assertFalse(os.path.exists(os.path.join(self.there, "stereo",
+                                                     "options.geometric.txt")))
+        self.fuse(self.there)
+        self.assertGreater(len(tiny.read_cloud(os.path.join(self.there, "fused.ply"))[1]), 1000)
+
     def test_maps_of_stereo_are_kept(self):
         self.export("exr")
         before = tiny.snapshot(self.here)

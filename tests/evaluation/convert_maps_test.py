@@ -5,7 +5,6 @@ import os
 import shutil
 import struct
 import subprocess
-import zlib
 
 import cv2
 import numpy as np
@@ -196,7 +195,7 @@ class ExportTest(ConvertMapsCase):
         page_workspace.write_maps(self.path("w"), "other.jpg")
         self.export("out", "--format", "npy")
         self.assertEqual([line[:40] for line in self.said], [
-            "WARNING: 1 maps, such as of other.jpg, a", "WARNING: 1 views, such as a.jpg, have no"])
+            "WARNING: 1 maps are of no photograph of ", "WARNING: 1 views have no normals, such a"])
         self.assertFalse(os.path.exists(self.path("out/depth/other.jpg.npy")))
 
     def test_refusals(self):
@@ -332,6 +331,8 @@ class ImportTest(ConvertMapsCase):
                    "# Comment\n1 2 3 4 5 a.jpg\n1 2 3 4 5 rig/b.jpg\n")
         self.write_depth("a.exr", np.ones((HEIGHT, WIDTH), np.float32))
         self.expect_error(self.import_words("in", workspace="w"), f"as {options} says; name")
+        self.write("bad/a.exr")
+        self.expect_error(self.import_words("bad", "--overwrite", workspace="w"), "bad/a.exr is")
         self.assertTrue(os.path.exists(options))
         self.run_well(*self.import_words("in", "--overwrite", workspace="w"))
         self.assertFalse(os.path.exists(options))
@@ -401,7 +402,8 @@ class DamagedFilesTest(ConvertMapsCase):
                 self.refuse(f"a.{name}", content)
         self.refuse("a.exr", files.read_bytes(self.path("png/depth/a.jpg.png")), " holds uint16")
         for name in FORMATS:
-            self.refuse(f"a.{name}", files.read_bytes(self.path(name, f"normals/a.jpg.{name}")), " ")
+            normals = self.path(name, "normals", f"a.jpg.{name}")
+            self.refuse(f"a.{name}", files.read_bytes(normals), " ")
 
     def test_what_means_something_else(self):
         pfm = b"Pf\n%d %d\n%s\n" + np.ones((HEIGHT, WIDTH), "<f4").tobytes()
