@@ -38,11 +38,11 @@ class Export:
                         layout.CONFIDENCE: _CONFIDENCE_SCALE} if extension == ".png" else {}
 
     def _find_tasks(self):
-        tasks, unknown = [], []
-        for maps in workspaces.list_views(self._workspace.folder, self._input_type):
-            view = self._workspace.views.get(maps.name)
-            tasks.append(_Task(maps, view)) if view else unknown.append(maps.name)
-        layout.warn(unknown, "maps are of no photograph of the sparse model and left out")
+        views = self._workspace.views
+        found = workspaces.list_views(self._workspace.folder, self._input_type)
+        layout.warn([maps.name for maps in found if maps.name not in views],
+                    "maps are of no photograph of the sparse model and left out")
+        tasks = [_Task(maps, views[maps.name]) for maps in found if maps.name in views]
         if not tasks:
             raise Failure(f"no map in {self._workspace.path('stereo')} is of a photograph of the "
                           "sparse model; name the workspace that they were made in")
@@ -53,7 +53,7 @@ class Export:
 
         Scenes have any unit, so that no step fits all; one for all views lets them be compared.
         """
-        largest = max(depth_maps.read_bin(task.maps.depth).max()
+        largest = max(float(depth_maps.read_bin(task.maps.depth).max())
                       for task in self._each("measuring"))
         return _round_below(formats.LARGEST / largest) if largest > 0 else 1000
 

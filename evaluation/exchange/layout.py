@@ -5,6 +5,7 @@
     maps.json
 """
 
+import math
 import os
 from typing import Optional
 
@@ -14,9 +15,19 @@ from ..processes import Failure
 DEPTH, NORMALS, CONFIDENCE = "depth", "normals", "confidence"
 
 
+class Scale(schemas.Number):
+    """Steps per unit, of whatever size the unit is."""
+
+    @classmethod
+    def _check(cls, value):
+        if not 0 < super()._check(value) < math.inf:
+            raise ValueError("value is not positive")
+        return value
+
+
 class Record(schemas.Model):
     """What is read back of maps.json."""
-    depth_scale: Optional[schemas.Positive] = None
+    depth_scale: Optional[Scale] = None
 
 
 def record_path(folder):

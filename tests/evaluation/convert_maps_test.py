@@ -148,6 +148,15 @@ class ExportTest(ConvertMapsCase):
         self.export("near", "--format", "png")
         self.assertIn("1 depths of a.jpg are less than half a step", self.said[-1])
 
+    def test_models_of_any_unit(self):
+        for factor, scale in ((1e-30, 5e33), (1e30, 5e-27)):
+            for name in NAMES:
+                files.write_bytes(self.maps("w", name)[0],
+                                  depth_maps.encode_bin(self.depth * np.float32(factor)))
+            self.assertIn(f"value / {scale:g},", self.export(f"{factor}", "--format", "png"))
+            self.run_well(*self.import_words(f"{factor}", "--overwrite"))
+            np.testing.assert_allclose(self.read_maps("v", "a.jpg")[0], factor * self.depth, 1e-4)
+
     def test_confidence_of_points(self):
         depth = np.full((HEIGHT, WIDTH), page_workspace.DEPTH, np.float32)
         depth[:6] = 0
