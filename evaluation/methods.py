@@ -13,7 +13,7 @@ def _stereo(**options):
 # What COLMAP takes, and so the paper; in the program colmap_defaults says the same, but
 # options after it would do nothing.
 _COLMAP = _stereo(num_levels=1, num_iterations=5, num_geom_iterations=5, num_samples=15,
-                  window_step=1, geom_perturbation=1, try_all=1, measure_all=1,
+                  window_step=1, sigma_color=0.2, geom_perturbation=1, try_all=1, measure_all=1,
                   hysteresis=0)
 _TAPA = _stereo(tapa=1)
 _PAPER = _COLMAP + _TAPA + _stereo(tapa_completion=0, tapa_min_textureness=0.5)
