@@ -35,6 +35,7 @@ for _name, _label, _options in (
         ("measure-all", "all views measured", _stereo(measure_all=1)),
         ("8-views", "8 views drawn", _stereo(num_samples=8)),
         ("full", "full windows", _stereo(window_step=1)),
+        ("sigma", "sigma_color 0.2", _stereo(sigma_color=0.2)),
         ("long", "4 iterations at every level", _stereo(num_fine_iterations=4)),
         ("short", "1 geometric iteration", _stereo(num_geom_iterations=1))):
     for _base in ("plain", "tapa"):
