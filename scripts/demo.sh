@@ -120,7 +120,8 @@ reconstruct_photos() {
       --output_path "$out/dense" --max_image_size "$size"
     touch "$out/dense/undistorted.done"
   fi
-  # A photograph that sees nothing from another angle is left out.
+  # A photograph that sees nothing from another angle is left out. How far these are
+  # is shown through stderr, past the logs.
   run "$bin/colmap" patch_match_stereo --workspace_path "$out/dense" \
     --PatchMatchStereo.allow_missing_files 1 --PatchMatchStereo.tapa 1 \
     --PatchMatchStereo.tapa_debug "$out/dense/tapa_debug" | tee -ia "$out/dense/stereo.log"
