@@ -14,6 +14,9 @@ namespace {
 // Begins the line anew. This does not go through std::cerr, of which the
 // graphical interface keeps a log.
 constexpr char kErase[] = "\r\033[K";
+// What is beyond the edge is not shown, rather than on a line that would stay.
+constexpr char kNoWrap[] = "\033[?7l";
+constexpr char kWrap[] = "\033[?7h";
 
 std::string TimeText(double seconds) {
   const long s = std::lround(std::max(0.0, std::min(seconds, 1e9)));
@@ -32,7 +35,7 @@ TerminalLine::TerminalLine() : is_terminal_(isatty(STDERR_FILENO)) {}
 
 void TerminalLine::Show(const std::string& text) {
   if (is_terminal_) {
-    std::fputs((kErase + text).c_str(), stderr);
+    std::fputs((kNoWrap + (kErase + text) + kWrap).c_str(), stderr);
     is_shown_ = true;
   }
 }
