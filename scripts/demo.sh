@@ -77,7 +77,7 @@ list_photographs() {
 reconstruct_sparse() {
   local photos=$1 out=$2 count=$3
   # Of small blocks, after each of which it tells how far it is.
-  local matcher=(exhaustive_matcher --ExhaustiveMatching.block_size 10)
+  local matcher=(exhaustive_matcher --ExhaustiveMatching.block_size 20)
   [[ ! -f $out/sparse.done ]] || return 0
   if [[ $count -gt 200 ]]; then
     matcher=(sequential_matcher)

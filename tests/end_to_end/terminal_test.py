@@ -45,7 +45,7 @@ def left_lines(text):
 class Terminal(tiny.TestCase):
 
     def test_automatic_reconstructor(self):
-        names = ["view%02d.png" % i for i in range(12)]
+        names = ["view%02d.png" % i for i in range(24)]
         tiny.make_images(self.path("photos"), names)
         tiny.make_model(self.path("out", "sparse", "0"), names)
         command = [tiny.COLMAP, "automatic_reconstructor", "--quality", "low",
@@ -61,15 +61,15 @@ class Terminal(tiny.TestCase):
                                  r" %  \d:\d\d:\d\d to go  " + name)
         self.assertEqual([], [line for line in left_lines(shown) if "[#" in line])
         lines = [line.rstrip("\r") for line in left_lines(shown)]
-        self.assertIn("Processed file [2/12]", lines)
-        self.assertIn("Undistorting image [3/12]", lines)
+        self.assertIn("Processed file [2/24]", lines)
+        self.assertIn("Undistorting image [3/24]", lines)
 
         tiny.make_model(self.path("plain", "sparse", "0"), names)
         result = tiny.run(command + [self.path("plain")] + options)
         self.assert_success(result)
         self.assertNotIn("\x1b", result.stdout)
         self.assertNotIn("\r", result.stdout)
-        self.assertIn("\nProcessed file [2/12]\n", result.stdout)
+        self.assertIn("\nProcessed file [2/24]\n", result.stdout)
 
     def test_an_error_stands_on_a_line_of_its_own(self):
         os.mkdir(self.path("photos"))
