@@ -61,6 +61,9 @@ get_directory_property(colmap_definitions
   DIRECTORY ${colmap_dir} COMPILE_DEFINITIONS)
 
 add_subdirectory(${CMAKE_SOURCE_DIR}/src/colmap ${CMAKE_BINARY_DIR}/src/colmap)
+if(TAPA_WITH_GUI)
+  add_subdirectory(${CMAKE_SOURCE_DIR}/src/ui ${CMAKE_BINARY_DIR}/src/ui)
+endif()
 
 add_custom_target(tapa_colmap_program ALL DEPENDS colmap_exe)
 install(TARGETS colmap_exe RUNTIME DESTINATION bin)

@@ -11,7 +11,8 @@ OUT/SET/METHOD-SEED, which is a COLMAP workspace with these files beside it:
     cloud_scores.json   scores of the points (cloud_scores.py)
     *.log               what the programs printed
 
-page/ makes HTML files of workspaces and reports, for scripts/result_page and evaluate.
+page/ makes HTML files of workspaces and reports, for scripts/result_page and evaluate;
+exchange/ files of other programs of maps, and back, for scripts/convert_maps.
 
 A command plans steps and runs those that are not done (steps.py). Scores remember
 what they were made from, and are not shown for anything else.

@@ -30,6 +30,12 @@ class Camera:
         """Focal lengths and principal point, fx, fy, cx, cy."""
         return self.params[:1] * (self.model == "SIMPLE_PINHOLE") + self.params[:4]
 
+    def resized(self, width, height):
+        """The same for a photograph that was made larger or smaller; not of a fisheye."""
+        x, y = width / self.width, height / self.height
+        fx, fy, cx, cy = self.pinhole
+        return Camera("PINHOLE", width, height, (fx * x, fy * y, cx * x, cy * y))
+
     def contains(self, x, y):
         """Which pixels (arrays of one shape) the photograph has; NaN is none."""
         return (x >= 0) & (x < self.width) & (y >= 0) & (y < self.height)

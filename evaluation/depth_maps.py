@@ -14,6 +14,7 @@ from . import files, images
 from .processes import Failure
 
 PNG_STEPS_PER_METRE = 4000
+_EXTENSIONS = (".png", ".bin")
 
 
 def is_depth(values):
@@ -72,32 +73,40 @@ def read(path, steps_per_metre=PNG_STEPS_PER_METRE):
     return read_png(path, steps_per_metre) if path.endswith(".png") else read_bin(path)
 
 
-def find(folder, name):
+def find(folder, name, extensions=_EXTENSIONS):
     """Path of a photograph's map in a folder, "" if there is none.
 
-    Named like the photograph, with its extension or without and with .png or .bin, in its own
+    Named like the photograph, with its extension or without and with one of these, in its own
     sub-folder or without.
     """
     for stem in (name, os.path.splitext(name)[0], os.path.splitext(os.path.basename(name))[0]):
-        for extension in (".png", ".bin"):
+        for extension in extensions:
             path = os.path.join(folder, stem + extension)
             if os.path.isfile(path):
                 return path
     return ""
 
 
-def find_all(folder, names):
+def find_all(folder, names, extensions=_EXTENSIONS):
     """The same for many photographs, by name. Raises Failure if one would serve for two."""
     paths, owners = {}, {}
     for name in names:
-        path = paths[name] = find(folder, name)
+        path = paths[name] = find(folder, name, extensions)
         if path and owners.setdefault(path, name) != name:
+            full = " or ".join(name + extension for extension in extensions)
             raise Failure(f"{path} could be the depth of both {owners[path]} and {name}; call it "
-                          f"{name}.png or {name}.bin, in full, in {folder}")
+                          f"{full}, in full, in {folder}")
     return paths
 
 
-def write_bin(path, depth):
+def encode_bin(values):
+    """Depths, or normals of shape (height, width, 3), as a file of COLMAP's has them."""
+    planes = values if values.ndim == 2 else np.moveaxis(values, 2, 0)
+    channels = 1 if values.ndim == 2 else values.shape[2]
+    head = b"%d&%d&%d&" % (values.shape[1], values.shape[0], channels)
+    return head + np.ascontiguousarray(planes, "<f4").tobytes()
+
+
+def write_bin(path, values):
     """Writes a map in COLMAP's format."""
-    files.write_bytes(path, b"%d&%d&1&" % (depth.shape[1], depth.shape[0]),
-                      np.ascontiguousarray(depth, "<f4").tobytes())
+    files.write_bytes(path, encode_bin(values))

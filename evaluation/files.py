@@ -4,6 +4,7 @@ import contextlib
 import fcntl
 import json
 import os
+import shutil
 import zlib
 
 from .processes import Failure
@@ -21,6 +22,30 @@ def replacing(path):
         finally:
             if os.path.lexists(new):
                 os.remove(new)
+    except OSError as error:
+        raise Failure(f"{path} cannot be written: {error.strerror}") from error
+
+
+@contextlib.contextmanager
+def replacing_folder(path):
+    """The same for a folder, to be filled under another name. Nothing but an empty one is
+    replaced."""
+    path = os.path.realpath(path)
+    new = path + ".new"
+    try:
+        if os.path.lexists(path) and os.listdir(path):
+            raise Failure(f"{path} is not empty; name another folder, or remove it")
+        os.makedirs(os.path.dirname(path), exist_ok=True)
+        try:
+            os.mkdir(new)
+        except FileExistsError as error:
+            raise Failure(f"{new} is there: another program makes it, or was stopped; remove it "
+                          "if none does") from error
+        try:
+            yield new
+            os.replace(new, path)
+        finally:
+            shutil.rmtree(new, ignore_errors=True)
     except OSError as error:
         raise Failure(f"{path} cannot be written: {error.strerror}") from error
 
@@ -58,7 +83,7 @@ def read_json(path, model=None):
     Raises Failure if it cannot be read or is not of the model.
     """
     try:
-        with open(path, encoding="utf-8") as file:
+        with open(path, encoding="utf-8", errors="surrogateescape") as file:
             content = json.load(file)
     except (FileNotFoundError, NotADirectoryError):
         return None

@@ -29,7 +29,12 @@ def _silence():
 
 def read(path, mode):
     """mode: of OpenCV."""
-    data = np.frombuffer(files.read_bytes(path), np.uint8)
+    return decode(files.read_bytes(path), path, mode)
+
+
+def decode(data, path, mode):
+    """The same from the content of a file."""
+    data = np.frombuffer(data, np.uint8)
     image = None
     try:
         with _silence():

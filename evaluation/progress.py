@@ -1,9 +1,12 @@
-"""Shows how far a program is, from the log that its output goes into."""
+"""Shows how far a program is: on a terminal in place, elsewhere by a line a minute."""
 
 import os
 import re
 import sys
 import threading
+import time
+
+from .texts import clock
 
 # As patch_match_stereo writes it: " 58.3 %  0:04:03 to go  geometric 2/12 room_01.jpg ...".
 _LINE = re.compile(rb"^ *\d+\.\d %  \d+:\d\d:\d\d to go  [^:\r\n]*", re.MULTILINE)
@@ -11,8 +14,8 @@ _INTERVAL, _TERMINAL_INTERVAL = 60, 1  # Seconds.
 
 
 class Follower:
-    """While it is entered, shows the last line of progress that is added to a log: on a
-    terminal in place, elsewhere once a minute, if it is another one."""
+    """While it is entered, shows the last line of progress that another program adds to a log,
+    if it is another one."""
 
     def __init__(self, log):
         self._log = log
@@ -32,16 +35,48 @@ class Follower:
     def _follow(self):
         terminal = sys.stderr.isatty()
         shown = b""
-        while not self._end.wait(_TERMINAL_INTERVAL if terminal else _INTERVAL):
+        while not self._end.wait(_interval(terminal)):
             with open(self._log, "rb") as file:
                 file.seek(self._begin)
                 lines = _LINE.findall(file.read())
             if lines and (terminal or lines[-1] != shown):
                 shown = lines[-1]
-                text = shown.decode(errors="replace")
-                _write(f"\r\033[K{text}" if terminal else f"{text}\n")
+                _show(shown.decode(errors="replace"), terminal)
         if terminal and shown:
-            _write("\r\033[K")
+            _clear()
+
+
+def each(items, what, name_of=str):
+    """Yields the items of a list, and shows how far this program is with them.
+
+    The time to go is that of as many items at the pace so far.
+    """
+    terminal = sys.stderr.isatty()
+    begin = shown = time.monotonic()
+    try:
+        for done, item in enumerate(items):
+            now = time.monotonic()
+            if done and now - shown >= _interval(terminal):
+                shown = now
+                to_go = clock((now - begin) * (len(items) - done) / done)
+                _show(f"{100 * done / len(items):5.1f} %  {to_go} to go  {what} "
+                      f"{done + 1}/{len(items)} {name_of(item)}", terminal)
+            yield item
+    finally:
+        if terminal and shown > begin:
+            _clear()
+
+
+def _interval(terminal):
+    return _TERMINAL_INTERVAL if terminal else _INTERVAL
+
+
+def _show(text, terminal):
+    _write(f"\r\033[K{text}" if terminal else f"{text}\n")
+
+
+def _clear():
+    _write("\r\033[K")
 
 
 def _write(text):

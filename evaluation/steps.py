@@ -11,6 +11,7 @@ import time
 from typing import Callable
 
 from . import processes
+from .texts import clock
 
 
 class Step:
@@ -73,7 +74,7 @@ def perform(jobs, dry_run=False):
                     _print(step.commands())
                     continue
                 if not step.is_quick:
-                    processes.say(f"[{number}/{len(jobs)}] {_clock(time.monotonic() - begin)}  "
+                    processes.say(f"[{number}/{len(jobs)}] {clock(time.monotonic() - begin)}  "
                                   f"{job.name}: {step.name} ...")
                 step.run()
         except processes.Interrupted:
@@ -86,11 +87,6 @@ def perform(jobs, dry_run=False):
         if not dry_run:
             job.note(message and step.name, message)
     return failures
-
-
-def _clock(seconds):
-    minutes, seconds = divmod(round(seconds), 60)
-    return f"{minutes // 60}:{minutes % 60:02d}:{seconds:02d}"
 
 
 def _print(commands):

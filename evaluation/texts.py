@@ -15,3 +15,9 @@ def tolerance_text(value, unit="m"):
     if unit == "%":
         return f"{value:.12g} %"
     return f"{100 * value:.12g} cm" if value < 1 else f"{value:.12g} m"
+
+
+def clock(seconds):
+    """0:01:30."""
+    minutes, seconds = divmod(round(seconds), 60)
+    return f"{minutes // 60}:{minutes % 60:02d}:{seconds:02d}"

@@ -75,16 +75,18 @@ list_photographs() {
 
 # Camera poses and sparse points, unless a run before has them.
 reconstruct_sparse() {
-  local photos=$1 out=$2 count=$3 matcher=exhaustive_matcher
+  local photos=$1 out=$2 count=$3
+  # Of small blocks, after each of which it tells how far it is.
+  local matcher=(exhaustive_matcher --ExhaustiveMatching.block_size 20)
   [[ ! -f $out/sparse.done ]] || return 0
   if [[ $count -gt 200 ]]; then
-    matcher=sequential_matcher
+    matcher=(sequential_matcher)
     echo "More than 200 photographs: each is matched with its neighbours in the order of names only."
   fi
   run_quietly "Finding features" "$count" "$bin/colmap" feature_extractor \
     --database_path "$out/database.db" --image_path "$photos" \
     --image_list_path "$out/photographs.list" --SiftExtraction.use_gpu 0
-  run_quietly "Matching features" "$count" "$bin/colmap" "$matcher" \
+  run_quietly "Matching features" "$count" "$bin/colmap" "${matcher[@]}" \
     --database_path "$out/database.db" --SiftMatching.use_gpu 0
   rm -rf "$out/sparse"
   mkdir -p "$out/sparse"
@@ -120,7 +122,8 @@ reconstruct_photos() {
       --output_path "$out/dense" --max_image_size "$size"
     touch "$out/dense/undistorted.done"
   fi
-  # A photograph that sees nothing from another angle is left out.
+  # A photograph that sees nothing from another angle is left out. How far these are
+  # is shown through stderr, past the logs.
   run "$bin/colmap" patch_match_stereo --workspace_path "$out/dense" \
     --PatchMatchStereo.allow_missing_files 1 --PatchMatchStereo.tapa 1 \
     --PatchMatchStereo.tapa_debug "$out/dense/tapa_debug" | tee -ia "$out/dense/stereo.log"

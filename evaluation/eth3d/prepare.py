@@ -36,11 +36,8 @@ def _link(target, link):
 def _scaled(camera, size):
     """The camera of a photograph made smaller so that no side exceeds size."""
     factor = min(1.0, size / max(camera.width, camera.height)) if size > 0 else 1.0
-    width = max(1, round(camera.width * factor))
-    height = max(1, round(camera.height * factor))
-    x, y = width / camera.width, height / camera.height
-    fx, fy, cx, cy = camera.pinhole
-    return colmap_model.Camera("PINHOLE", width, height, (fx * x, fy * y, cx * x, cy * y))
+    return camera.resized(max(1, round(camera.width * factor)),
+                          max(1, round(camera.height * factor)))
 
 
 def sampled_pixels(original, undistorted):

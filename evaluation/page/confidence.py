@@ -1,12 +1,13 @@
 """How many views confirm what a photograph sees, as maps of numbers."""
 
+import array
 import os
 import re
 
 import cv2
 import numpy as np
 
-from .. import files
+from .. import blocks, files
 from ..processes import Failure
 
 _SAME_DEPTH = 0.01  # Relative: a point that is farther from a map is hidden or not of it.
@@ -44,9 +45,19 @@ def _count_views(path):
 def seen_by(view, depth, points, confidence, width):
     """The confidence of points on what a view's map shows, 0 where there is none.
 
-    points: float64; the map that comes out is width wide.
+    The map that comes out is width wide.
     """
     height = max(1, round(width * depth.shape[0] / depth.shape[1]))
+    values = np.zeros((height, width), np.float32)
+    for block in blocks.slices(len(points)):
+        _draw_seen(values, view, depth, points[block].astype(np.float64), confidence[block])
+    # Points may be fewer than pixels.
+    return np.where(values > 0, values, cv2.dilate(values, np.ones((3, 3), np.uint8)))
+
+
+def _draw_seen(values, view, depth, points, confidence):
+    """Where points are seen, values become at least their confidence."""
+    height, width = values.shape
     fx, fy, cx, cy = view.camera.pinhole
     x, y, z = view.rotation @ points.T + view.translation[:, None]
     with np.errstate(all="ignore"):
@@ -55,11 +66,8 @@ def seen_by(view, depth, points, confidence, width):
     u, v, z = u[inside], v[inside], z[inside]
     found = depth[(v * depth.shape[0]).astype(int), (u * depth.shape[1]).astype(int)]
     seen = np.abs(found - z) < _SAME_DEPTH * z
-    values = np.zeros((height, width), np.float32)
     np.maximum.at(values, ((v[seen] * height).astype(int), (u[seen] * width).astype(int)),
                   confidence[inside[seen]])
-    # Points may be fewer than pixels.
-    return np.where(values > 0, values, cv2.dilate(values, np.ones((3, 3), np.uint8)))
 
 
 def read_graph(path):
@@ -68,13 +76,15 @@ def read_graph(path):
     header = re.match(rb"(\d{1,6})&(\d{1,6})&1&", data)
     try:
         width, height = map(int, header.groups())
-        words = np.frombuffer(data, "<i4", offset=header.end()).tolist()
+        words = array.array("i", data[header.end():])
         counts, at = np.zeros((height, width), np.float32), 0
         while at < len(words):
             column, row, count = words[at:at + 3]
+            if min(column, row, count) < 0:
+                raise ValueError
             counts[row, column] = count
-            at += 3 + max(count, 0)
+            at += 3 + count
     except (AttributeError, ValueError, IndexError, MemoryError) as error:
         raise Failure(f"{path} is not a consistency graph of COLMAP, or damaged; remove it to "
-                      "make the page without it") from error
+                      "go on without it") from error
     return counts

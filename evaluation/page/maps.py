@@ -47,7 +47,7 @@ def normals_legend():
 class Painter:
     """Draws photographs of a workspace (workspace.py), their pictures at most width wide.
 
-    points: of the cloud in double precision with their confidence, None where it is not known.
+    points: of the cloud with their confidence, None where it is not known.
     """
 
     def __init__(self, workspace, width, tapa_debug, points=None):

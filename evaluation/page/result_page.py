@@ -12,8 +12,6 @@ of the two folders above, beside that. The origin of depths is what patch_match_
 import math
 import os
 
-import numpy as np
-
 from .. import command_line
 from . import confidence, html, left_out, maps, scene
 from .logs import Logs
@@ -76,7 +74,7 @@ def _to_project(clouds):
     for cloud, values in clouds:
         if values is not None and len(values):
             chosen = thin(cloud.points, _PROJECTED)
-            return cloud.points[chosen].astype(np.float64), values[chosen]
+            return cloud.points[chosen], values[chosen]
     return None
 
 

@@ -62,6 +62,7 @@ void TakeColmapDefaults(PatchMatchOptions* options) {
   options->num_samples = 15;
   options->num_iterations = options->num_geom_iterations = 5;
   options->window_step = 1;
+  options->sigma_color = 0.2;
   options->first_perturbation = options->geom_perturbation = 1;
   options->search.try_all = true;
   options->search.measure_all = true;

@@ -8,6 +8,8 @@
 #include <iostream>
 #include <new>
 
+#include "src/colmap/step_bar.h"
+
 namespace tapa {
 namespace {
 
@@ -89,6 +91,7 @@ int RunCommand(const std::string& name,
                const std::function<int(int, char**)>& command, int argc,
                char** argv) {
   const FatalErrors fatal_errors(name);
+  const StepBar step_bar;
   std::set_terminate(&Terminate);
   try {
     const int status = command(argc, argv);

@@ -38,7 +38,8 @@ class FatalErrors : public google::LogSink {
 void PrintError(const std::string& text);
 
 // Runs a command of the program such that it never aborts: a failed check, and
-// an exception in any thread, become a line and exit status 1.
+// an exception in any thread, become a line and exit status 1. On a terminal, a
+// bar shows how far it is (step_bar.h).
 int RunCommand(const std::string& name,
                const std::function<int(int, char**)>& command, int argc,
                char** argv);

@@ -1,7 +1,6 @@
 #include "src/colmap/fusion_run.h"
 
 #include <chrono>
-#include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <iostream>
@@ -12,6 +11,8 @@
 #include "src/colmap/fusion_input.h"
 #include "src/colmap/fusion_source.h"
 #include "src/colmap/interrupt.h"
+#include "src/colmap/terminal_line.h"
+#include "util/string.h"
 
 namespace tapa {
 namespace {
@@ -21,6 +22,49 @@ using Clock = std::chrono::steady_clock;
 double SecondsSince(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
+
+// Tells the user how far a fusion is: a line per view and, on a terminal, one
+// that is renewed in place.
+class FusionProgress {
+ public:
+  explicit FusionProgress(size_t num_views) : num_views_(num_views) {}
+
+  void Update(double share) {
+    constexpr double kInterval = 0.3;
+    share_ = share;
+    if (SecondsSince(last_update_) > kInterval) {
+      last_update_ = Clock::now();
+      line_.Show(
+          TimeToGo(share, SecondsSince(begin_)) +
+          colmap::StringPrintf("  fusing %zu/%zu", num_fused_ + 1, num_views_));
+    }
+  }
+
+  void EndView(const std::string& name, size_t num_points) {
+    ++num_fused_;
+    num_points_ += num_points;
+    const double to_go =
+        share_ > 0 ? SecondsSince(begin_) * (1 / share_ - 1) : 0;
+    line_.Clear();
+    std::cout << colmap::StringPrintf(
+                     "Fused %zu/%zu %s in %.1f s: %zu points, %zu in all; %.0f "
+                     "s to go",
+                     num_fused_, num_views_, name.c_str(),
+                     SecondsSince(view_begin_), num_points, num_points_, to_go)
+              << std::endl;
+    view_begin_ = last_update_ = Clock::now();
+  }
+
+ private:
+  const size_t num_views_;
+  const Clock::time_point begin_ = Clock::now();
+  Clock::time_point view_begin_ = begin_;
+  Clock::time_point last_update_ = begin_;
+  double share_ = 0;
+  size_t num_fused_ = 0;
+  size_t num_points_ = 0;
+  TerminalLine line_;
+};
 
 void PrintOptions(const colmap::mvs::StereoFusionOptions& options) {
   colmap::PrintHeading2("StereoFusion::Options");
@@ -51,26 +95,13 @@ bool FuseAndReport(const colmap::mvs::StereoFusionOptions& options,
   const FusionProblem problem = source->Problem();
   FusionControl control;
   control.num_threads = options.num_threads;
-  double done = 0;
+  FusionProgress progress(problem.views.size());
   control.progress = [&](double share) {
-    done = share;
+    progress.Update(share);
     return !is_stopped();
   };
-  const auto begin = Clock::now();
-  auto view_begin = begin;
-  size_t num_views = 0;
-  size_t num_points = 0;
   control.view_done = [&](const FusedView& view) {
-    ++num_views;
-    num_points += view.points.size();
-    const double to_go = done > 0 ? SecondsSince(begin) * (1 / done - 1) : 0;
-    std::printf(
-        "Fused %zu/%zu %s in %.1f s: %zu points, %zu in all; %.0f s to "
-        "go\n",
-        num_views, problem.views.size(), source->Name(view.view).c_str(),
-        SecondsSince(view_begin), view.points.size(), num_points, to_go);
-    std::fflush(stdout);
-    view_begin = Clock::now();
+    progress.EndView(source->Name(view.view), view.points.size());
   };
   return Fuse(options.agreement, problem, control, cloud);
 }

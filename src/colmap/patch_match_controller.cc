@@ -67,7 +67,7 @@ void PatchMatchController::Run() {
     if (!workers.message.empty()) {
       std::cout << workers.message << std::endl;
     }
-    tapa::StereoRun run(std::move(plan), workers.devices, stopped);
+    tapa::StereoRun run(std::move(plan), workers.devices, stopped, listener_);
     if (run.Run()) {
       exit_status_ = EXIT_SUCCESS;
     } else {

@@ -1,9 +1,6 @@
 #include "src/colmap/progress.h"
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <ctime>
 #include <iostream>
@@ -27,19 +24,14 @@ std::string Format(const char* format, Args... args) {
   return text;
 }
 
-std::string TimeText(double seconds) {
-  const long s = std::lround(std::max(0.0, std::min(seconds, 1e9)));
-  return Format("%ld:%02ld:%02ld", s / 3600, s / 60 % 60, s % 60);
-}
-
 }  // namespace
 
 void PrintWarning(const std::string& text) {
   std::cout << "WARNING: " << text << std::endl;
 }
 
-Progress::Progress(double total_work)
-    : total_work_(total_work), is_terminal_(isatty(STDOUT_FILENO)) {}
+Progress::Progress(double total_work, ProgressListener listener)
+    : total_work_(total_work), listener_(std::move(listener)) {}
 
 void Progress::CountTime() {
   const Clock::time_point now = Clock::now();
@@ -53,33 +45,47 @@ void Progress::CountTime() {
   last_cpu_count_ = cpu_now;
 }
 
-int Progress::BeginView(Pass pass, int level, const std::string& what,
-                        double megapixels, double work) {
+int Progress::BeginView(const ViewWork& view) {
   const std::lock_guard<std::mutex> lock(mutex_);
   CountTime();
-  place_ = {level, pass};
+  place_ = {view.level, view.pass};
   last_update_ = last_count_;
-  const std::string name =
-      (level > 0 ? Format("level %d ", level) : "") + PassName(pass);
-  running_[next_view_] = {place_, name + " " + what, megapixels,
-                          work,   last_count_,       last_cpu_count_};
+  running_[next_view_] = {view, last_count_, last_cpu_count_};
   return next_view_++;
 }
 
-std::string Progress::TimeToGo() const {
+std::string Progress::View::Name() const {
+  return (of.level > 0 ? Format("level %d ", of.level) : "") +
+         PassName(of.pass) + " " + of.number + " " + of.name;
+}
+
+double Progress::ShareDone() const {
   double done = work_done_;
+  for (const auto& [number, view] : running_) {
+    done += view.share * view.of.work;
+  }
+  return total_work_ > 0 ? std::min(1.0, done / total_work_) : 1.0;
+}
+
+std::string Progress::Text(const View& view) const {
   double seconds = 0;
   for (const auto& [place, totals] : passes_) {
     seconds += totals.seconds;
   }
-  for (const auto& [number, view] : running_) {
-    done += view.share * view.work;
+  return TimeToGo(ShareDone(), seconds) + "  " + view.Name();
+}
+
+void Progress::Tell(const View& view, bool is_finished) const {
+  if (listener_) {
+    ProgressNews news;
+    news.share = ShareDone();
+    news.text = Text(view) + (view.of.level == 0 ? ", full size" : "");
+    if (is_finished && view.of.level == 0) {
+      news.finished_view = view.of.name;
+      news.finished_pass = view.of.pass;
+    }
+    listener_(news);
   }
-  const double share =
-      total_work_ > 0 ? std::min(1.0, done / total_work_) : 1.0;
-  return Format(
-      "%5.1f %%  %s to go", 100 * share,
-      share > 0 ? TimeText(seconds * (1 - share) / share).c_str() : "?");
 }
 
 void Progress::Update(int number, double share) {
@@ -87,22 +93,18 @@ void Progress::Update(int number, double share) {
   View& view = running_.at(number);
   view.share = share;
   const Clock::time_point now = Clock::now();
-  if (!is_terminal_ || now - last_update_ < kUpdateInterval) {
+  if (now - last_update_ < kUpdateInterval) {
     return;
   }
   last_update_ = now;
   CountTime();
   const double seconds =
       std::chrono::duration<double>(now - view.begin).count();
-  const double done = share * view.megapixels;
+  const double done = share * view.of.megapixels;
   const std::string speed =
       done > 0 ? Format(", %.1f s per megapixel", seconds / done) : "";
-  const std::string line = "\r\033[K" + TimeToGo() + "  " + view.what + ": " +
-                           Format("%.0f %%", 100 * share) + speed;
-  // To the terminal alone: the graphical interface keeps a log of std::cout.
-  std::fputs(line.c_str(), stdout);
-  std::fflush(stdout);
-  line_shown_ = true;
+  line_.Show(Text(view) + Format(": %.0f %%", 100 * share) + speed);
+  Tell(view, false);
 }
 
 void Progress::EndView(int number) {
@@ -111,33 +113,27 @@ void Progress::EndView(int number) {
   const View view = running_.at(number);
   const bool alone = running_.size() == 1;
   running_.erase(number);
-  passes_[view.place].megapixels += view.megapixels;
-  work_done_ += view.work;
+  const double megapixels = view.of.megapixels;
+  passes_[{view.of.level, view.of.pass}].megapixels += megapixels;
+  work_done_ += view.of.work;
   const double seconds =
       std::chrono::duration<double>(last_count_ - view.begin).count();
   // Other views' CPU time cannot be told from this one's.
   const std::string cpu =
       alone ? Format(" (CPU %.1f s)",
-                     (last_cpu_count_ - view.cpu_begin) / view.megapixels)
+                     (last_cpu_count_ - view.cpu_begin) / megapixels)
             : "";
-  Clear();
-  std::cout << TimeToGo() << "  " << view.what
-            << Format(": %.2f megapixels in %.1f s, %.1f s", view.megapixels,
-                      seconds, seconds / view.megapixels)
+  line_.Clear();
+  std::cout << Text(view)
+            << Format(": %.2f megapixels in %.1f s, %.1f s", megapixels,
+                      seconds, seconds / megapixels)
             << cpu << " per megapixel" << std::endl;
+  Tell(view, true);
 }
 
 void Progress::ClearLine() {
   const std::lock_guard<std::mutex> lock(mutex_);
-  Clear();
-}
-
-void Progress::Clear() {
-  if (line_shown_) {
-    std::fputs("\r\033[K", stdout);
-    std::fflush(stdout);
-    line_shown_ = false;
-  }
+  line_.Clear();
 }
 
 void Progress::PrintSummary() const {

@@ -7,23 +7,35 @@
 #include <string>
 
 #include "src/colmap/pass.h"
+#include "src/colmap/progress_news.h"
+#include "src/colmap/terminal_line.h"
 
 namespace tapa {
 
 void PrintWarning(const std::string& text);
+
+// A view to compute in a pass at a level.
+struct ViewWork {
+  Pass pass;
+  int level;
+  // Such as "3/12".
+  std::string number;
+  std::string name;
+  double megapixels;
+  // What it takes, in any unit.
+  double work;
+};
 
 // Tells the user how far a run is: a line per finished view and, on a terminal,
 // one that is renewed in place while a view is computed. Several views may be
 // computed at a time, by threads of their own.
 class Progress {
  public:
-  // total_work: what the run has to compute, in any unit.
-  explicit Progress(double total_work);
+  // total_work: what the run has to compute, in the unit of ViewWork.
+  explicit Progress(double total_work, ProgressListener listener = nullptr);
 
-  // what: number and name of the view, for the user. work: its share of the
-  // total. Returns the number by which the functions below know the view.
-  int BeginView(Pass pass, int level, const std::string& what,
-                double megapixels, double work);
+  // Returns the number by which the functions below know the view.
+  int BeginView(const ViewWork& view);
   // share: part of the view that is done, 0 to 1.
   void Update(int view, double share);
   void EndView(int view);
@@ -52,25 +64,27 @@ class Progress {
   };
 
   struct View {
-    Place place;
-    std::string what;
-    double megapixels;
-    double work;
+    ViewWork of;
     Clock::time_point begin;
     double cpu_begin;
     double share = 0;
+
+    // For the user.
+    std::string Name() const;
   };
 
   // All with the mutex held.
-  std::string TimeToGo() const;
-  void Clear();
+  double ShareDone() const;
+  // How far all is, and a view with it.
+  std::string Text(const View& view) const;
+  void Tell(const View& view, bool is_finished) const;
   // Adds the time since the last call to the pass that is running.
   void CountTime();
 
   const double total_work_;
-  const bool is_terminal_;
+  const ProgressListener listener_;
   std::mutex mutex_;
-  bool line_shown_ = false;
+  TerminalLine line_;
   // Time during which several views are computed counts once.
   std::map<Place, Totals> passes_;
   std::map<int, View> running_;

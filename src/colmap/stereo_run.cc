@@ -72,12 +72,12 @@ std::string PictureFolder(const PassPlan& pass, const SceneView& view) {
 }  // namespace
 
 StereoRun::StereoRun(StereoPlan plan, std::vector<int> workers,
-                     std::function<bool()> stopped)
+                     std::function<bool()> stopped, ProgressListener listener)
     : plan_(std::move(plan)),
       workers_(std::move(workers)),
       stopped_(std::move(stopped)),
       reader_(plan_),
-      progress_(TotalWork(plan_)),
+      progress_(TotalWork(plan_), std::move(listener)),
       num_done_(plan_.NumDone()) {}
 
 bool StereoRun::Run() {
@@ -212,10 +212,9 @@ bool StereoRun::ComputeProblem(size_t number, const PassPlan& pass,
   const ViewIndices& problem = plan_.problems[number];
   const SceneView& view = plan_.View(problem.reference, pass.level);
   const int progress_view = progress_.BeginView(
-      pass.pass, pass.level,
-      std::to_string(number + 1) + "/" + std::to_string(plan_.problems.size()) +
-          " " + view.name,
-      Megapixels(view), Work(pass, view));
+      {pass.pass, pass.level,
+       std::to_string(number + 1) + "/" + std::to_string(plan_.problems.size()),
+       view.name, Megapixels(view), Work(pass, view)});
   if (!ComputeView({pass, problem, view, progress_view}, device)) {
     return false;
   }

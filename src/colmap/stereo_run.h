@@ -23,9 +23,10 @@ struct TapaRecord;
 class StereoRun {
  public:
   // workers: for each the GPU that it computes on, or kCpu. stopped: asked
-  // often, and by several threads, whether to end the run.
+  // often, and by several threads, whether to end the run. listener: hears how
+  // far it is.
   StereoRun(StereoPlan plan, std::vector<int> workers,
-            std::function<bool()> stopped);
+            std::function<bool()> stopped, ProgressListener listener = nullptr);
 
   // Returns false if stopped. Throws Failure.
   bool Run();

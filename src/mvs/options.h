@@ -175,7 +175,9 @@ void VisitSearchOptions(Options* options, const Visitor& visit) {
 // Parameters of one depth map estimation. The defaults are COLMAP's
 // (Schoenberger et al., "Pixelwise View Selection for Unstructured Multi-View
 // Stereo", ECCV 2016), but for fewer samples (15 there, in every row
-// and column of the window), iterations (5) and random changes (SearchOptions).
+// and column of the window), iterations (5) and random changes (SearchOptions),
+// and weights that fall off faster with colour (sigma_color 0.2), so that
+// surfaces do not grow over those behind them.
 // Angles are in degrees.
 struct Options {
   // Half size of the correlation window, in pixels: the window has
@@ -187,7 +189,7 @@ struct Options {
   // window_radius.
   double sigma_spatial = -1;
   // Spread of the bilateral weights over difference in intensity (0 to 1).
-  double sigma_color = 0.2;
+  double sigma_color = 0.1;
 
   // Number of source views drawn with replacement per pixel and sweep.
   int num_samples = 4;

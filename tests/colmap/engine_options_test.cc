@@ -153,6 +153,7 @@ TEST(PassOptions, ColmapDefaultsTakeTheirPlace) {
     EXPECT_EQ(result.num_iterations, 5);
     EXPECT_EQ(result.num_samples, 15);
     EXPECT_EQ(result.window_step, 1);
+    EXPECT_EQ(result.sigma_color, 0.2);
     EXPECT_EQ(result.first_perturbation, 1);
     EXPECT_TRUE(result.search.try_all);
     EXPECT_TRUE(result.search.measure_all);

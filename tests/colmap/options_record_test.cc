@@ -110,13 +110,13 @@ TEST(OptionsOfMaps, NumbersReadBackExactly) {
 
 TEST(OptionsOfMaps, ADefaultInSinglePrecisionIsWhatItStandsFor) {
   PatchMatchOptions options;
-  ASSERT_NE(options.sigma_color, 0.2) << "COLMAP's default is 0.2f";
-  EXPECT_EQ(OptionsOfMaps(options).at("sigma_color"), "0.2");
-  options.sigma_color = 0.2;
+  ASSERT_NE(options.ncc_sigma, 0.6) << "COLMAP's default is 0.6f";
+  EXPECT_EQ(OptionsOfMaps(options).at("ncc_sigma"), "0.6");
+  options.ncc_sigma = 0.6;
   EXPECT_EQ(DifferenceOf(PatchMatchOptions(), options), "");
-  options.sigma_color = 0.2000001;
+  options.ncc_sigma = 0.6000001;
   EXPECT_EQ(DifferenceOf(PatchMatchOptions(), options),
-            "sigma_color was 0.2, is 0.2000001");
+            "ncc_sigma was 0.6, is 0.6000001");
 }
 
 TEST(DescribeDifferences, APassBeforeTheGeometricOneIsNotAFinalOne) {

@@ -1,4 +1,5 @@
-"""The graphical interface starts, and its Stereo button works without CUDA."""
+"""The graphical interface starts, and its Stereo button works without CUDA: the
+window shows how far the run is, and its maps meanwhile."""
 
 import os
 import subprocess
@@ -24,11 +25,19 @@ class Gui(tiny.TestCase):
 
     def test_stereo_button(self):
         names = tiny.make_workspace(self.folder)
-        result = tiny.run([os.environ["GUI_STEREO"], self.folder],
-                          env=OFFSCREEN)
-        self.assertEqual(result.returncode, 0, result.stdout)
+        self.press_stereo()
         for name in names:
             tiny.read_map(tiny.map_path(self.folder, name))
+
+    def test_stop_button(self):
+        tiny.make_workspace(self.folder)
+        self.press_stereo("stop")
+        self.assertEqual(os.listdir(self.path("stereo", "depth_maps")), [])
+
+    def press_stereo(self, *arguments):
+        result = tiny.run([os.environ["GUI_STEREO"], self.folder, *arguments],
+                          env=OFFSCREEN)
+        self.assertEqual(result.returncode, 0, result.stdout)
 
 
 if __name__ == "__main__":

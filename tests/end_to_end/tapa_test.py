@@ -324,10 +324,10 @@ class Record(tiny.TestCase):
     def test_options_that_change_no_map(self):
         self.assert_success(tiny.run_stereo(self.folder))
         os.remove(tiny.map_path(self.folder, self.names[1]))
-        # 0.2 is COLMAP's default; no photograph is as large as the limit.
+        # 0.6 is COLMAP's default; no photograph is as large as the limit.
         result = tiny.run_stereo(self.folder, num_threads=1, use_gpu=0,
                                  cache_size=1, allow_missing_files=1,
-                                 sigma_color=0.2, tapa_fill_radius=7,
+                                 ncc_sigma=0.6, tapa_fill_radius=7,
                                  max_image_size=2000)
         self.assert_success(result)
         self.assertNotIn("WARNING", result.stdout)

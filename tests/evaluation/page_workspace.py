@@ -20,7 +20,9 @@ def make(folder, names, num_mapped=None, points=2000):
     _write_model(os.path.join(folder, "sparse"), names)
     for number, name in enumerate(names):
         image = np.full((SIZE[1], SIZE[0], 3), 40 * number, np.uint8)
-        with open(os.path.join(folder, "images", name), "wb") as file:
+        path = os.path.join(folder, "images", name)
+        os.makedirs(os.path.dirname(path), exist_ok=True)
+        with open(path, "wb") as file:
             file.write(cv2.imencode(".jpg", image)[1])
     for name in names[:num_mapped]:
         write_maps(folder, name)

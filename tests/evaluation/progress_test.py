@@ -46,5 +46,27 @@ class FollowerTest(TestCase):
         self.assertEqual("", self.shown("Loading scan: 50 % of it\n", io.StringIO()))
 
 
+class EachTest(unittest.TestCase):
+    def shown(self, stream, interval):
+        with mock.patch.multiple(progress, _INTERVAL=interval, _TERMINAL_INTERVAL=interval), \
+                contextlib.redirect_stderr(stream):
+            self.assertEqual([1, 2, 3], list(progress.each([1, 2, 3], "counting",
+                                                           lambda item: f"view {item}")))
+        return stream.getvalue()
+
+    def test_lines_elsewhere(self):
+        self.assertEqual(" 33.3 %  0:00:00 to go  counting 2/3 view 2\n"
+                         " 66.7 %  0:00:00 to go  counting 3/3 view 3\n",
+                         self.shown(io.StringIO(), 0))
+
+    def test_one_line_on_a_terminal(self):
+        text = self.shown(Terminal(), 0)
+        self.assertEqual(2, text.count("\r\033[K "), text)
+        self.assertTrue(text.endswith("\r\033[K"), text)
+
+    def test_nothing_where_it_is_fast(self):
+        self.assertEqual("", self.shown(io.StringIO(), 60) + self.shown(Terminal(), 60))
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -110,7 +110,8 @@ class CloudTest(TestCase):
         path = self.path("a.bin")
         files.write_bytes(path, b"3&2&1&" + struct.pack("<9i", 2, 1, 2, 7, 8, 0, 0, 1, 9))
         self.assertEqual(confidence.read_graph(path).tolist(), [[1, 0, 0], [0, 0, 2]])
-        for damaged in (b"", b"3&2&", b"3&2&1&" + struct.pack("<3i", 9, 9, 0), b"3&2&1&\0"):
+        for damaged in (b"", b"3&2&", b"3&2&1&" + struct.pack("<3i", 9, 9, 0), b"3&2&1&\0",
+                        b"3&2&1&" + struct.pack("<3i", 1, 1, -1)):
             files.write_bytes(path, damaged)
             with self.assertRaisesRegex(Failure, "a.bin"):
                 confidence.read_graph(path)
