@@ -233,6 +233,8 @@ TEST(Mask, TapaLeavesMaskedPixelsAlone) {
     Options options = SomeOptions(true);
     options.tapa.enabled = true;
     options.tapa.completion = completion;
+    // With which much is left for it to complete here.
+    options.sigma_color = 0.2;
     // So that what one round filled would serve the next.
     options.tapa.fill_rounds = 3;
     TapaRecord record;
