@@ -11,11 +11,15 @@ set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 build=$(realpath -m "${BUILD_DIR:-$root/build}")
 log=$build/build.log
-options=() targets=()
+options=() targets=() packages=(build evaluation)
 for word in "$@"; do
   if [[ $word == -* ]]; then options+=("$word"); else targets+=("$word"); fi
 done
-[[ ${#targets[@]} -gt 0 ]] || targets=(colmap_exe)
+if [[ ${#targets[@]} -gt 0 ]]; then
+  packages+=(tests)
+else
+  targets=(colmap_exe)
+fi
 
 fail() {
   grep -m 1 '^ERROR' "$log" >&2 ||
@@ -49,7 +53,7 @@ announce() {
 # Of CPU time, on average.
 seconds_per_file=4
 
-"$root/scripts/install_deps.sh"
+"$root/scripts/install_deps.sh" "${packages[@]}"
 mkdir -p "$build"
 : >"$log"
 configure || fail

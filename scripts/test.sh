@@ -1,16 +1,17 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds everything, runs the tests, several at a time,
 # and tells which took longest. Arguments go to ctest: scripts/test.sh -R correlation.
-# Tests that are long only because their images are large (label full_size) are left
-# out unless an argument names them: scripts/test.sh -L full_size. BUILD_DIR names
-# another folder than build/.
+# Tests that are long only because their images are large (label full_size), and those
+# that make whole Debian roots (bare_root), are left out unless an argument names the
+# label: scripts/test.sh -L full_size. BUILD_DIR names another folder than build/.
 set -euo pipefail
 
 here=$(cd "$(dirname "$0")" && pwd)
 "$here/build.sh" all
 cd "${BUILD_DIR:-$here/../build}"
 
-[[ "$*" == *full_size* ]] || set -- -LE full_size "$@"
+[[ "$*" == *full_size* || "$*" == *bare_root* ]] ||
+  set -- -LE '^(full_size|bare_root)$' "$@"
 rm -f tests.xml
 status=0
 ctest --parallel "$(nproc)" --timeout 1800 --output-on-failure \
