@@ -66,7 +66,7 @@ class Workspace(tiny.TestCase):
     def expect_points(self, **options):
         self.assert_success(self.stereo(**options))
         for rule in RULES:
-            self.assertGreater(len(self.fused(**rule)), 500)
+            self.assertGreater(len(self.fused(**rule)), 400)
 
 
 class Names(Workspace):
