@@ -46,12 +46,12 @@ announce() {
   minutes=$((files * seconds_per_file / cores / 60 + 1))
   echo "Building ${targets[*]}: $files files to compile on $cores cores, at low" \
     "priority; about $minutes minutes, less for what ccache knows." \
-    "It takes up to 0.4 GB in $build, where $(df -h --output=avail "$build" |
+    "It takes up to 0.3 GB in $build, where $(df -h --output=avail "$build" |
       tail -n 1 | tr -d ' ') are free."
 }
 
 # Of CPU time, on average.
-seconds_per_file=4
+seconds_per_file=5
 
 "$root/scripts/install_deps.sh" "${packages[@]}"
 mkdir -p "$build"
