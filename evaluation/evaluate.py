@@ -169,12 +169,9 @@ def _write_report(experiments, arguments, failures):
                                ["Points were not scored, as asked."] if arguments.no_clouds
                                else [])
     print(f"Report: {path}")
-    page = os.path.join(out, "report.html")
-    try:
-        report_page.write(page, text, reports)
+    page = report_page.write_beside(path, text, reports)
+    if page:
         print(f"Page: {page}")
-    except Failure as error:  # It has nothing that the report does not have, but to turn points.
-        processes.say(f"WARNING: there is no page {page}: {error}")
 
 
 def _write_page(page, arguments):

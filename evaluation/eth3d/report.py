@@ -5,6 +5,7 @@ import os
 from .. import figures, files, report, results, workspaces
 from ..experiment import Experiment
 from ..methods import ABLATION, TAPA_ABLATION
+from ..page import report_page
 from . import paper_tables, published
 from .scenes import all_scenes
 
@@ -31,7 +32,7 @@ def _names(scenes):
 
 
 class Eth3dReport:
-    """FOLDER/report.md, figures, tables, and a page per scene."""
+    """FOLDER/report.md, figures, tables, and a page per scene; all pages in HTML, too."""
 
     def __init__(self, folder, runs, sets, scenes, methods, seeds=(0,)):
         """runs: has SET/METHOD-SEED; sets: the prepared scenes; scenes: what it is about."""
@@ -53,9 +54,7 @@ class Eth3dReport:
             parts.append(f"- [{scene.set_name}]({report.link_to(page, '.')}), {scene.split}")
         if missing:
             parts += ["\n## What is missing\n", *missing]
-        path = os.path.join(self.folder, "report.md")
-        files.write_text(path, "\n".join(parts) + "\n")
-        return path
+        return self._write_page("report.md", "\n".join(parts) + "\n", [])
 
     def _runs(self):
         """(scene, run) of all."""
@@ -132,6 +131,12 @@ class Eth3dReport:
             os.path.join(self.folder, "tables"))
         parts = [f"# {scene.set_name}\n", shown.provenance(), *map(shown.block, report.BLOCKS)]
         page = f"{scene.set_name}.md"
-        files.write_text(os.path.join(self.folder, page),
-                         "\n".join(part for part in parts if part))
+        self._write_page(page, "\n".join(part for part in parts if part), [shown])
         return page, shown.missing()
+
+    def _write_page(self, name, text, reports):
+        """Writes a page, and the same in HTML beside it. Returns its path."""
+        path = os.path.join(self.folder, name)
+        files.write_text(path, text)
+        report_page.write_beside(path, text, reports)
+        return path

@@ -6,12 +6,29 @@ import os
 import re
 import urllib.parse
 
-from .. import binary_model, files, methods, pictures
+from .. import binary_model, files, methods, pictures, processes
+from ..processes import Failure
 from . import confidence, html, scene
 
 _POINTS = 1_000_000  # Of all sets together.
 _CLOUDS = ("fused_agreement", "fused", "fused_default")  # The first that there is, of a method.
+_REPORT_LINK = re.compile(r"\]\(([^():]*)\.md\)")
 _IMAGE = re.compile(r'src="([^"]*)"')
+
+
+def write_beside(path, markdown, reports):
+    """Writes the page of the report at path beside it. Returns its path, "" if there is none.
+
+    A page has nothing that its report does not have, but points to turn: without it there is
+    a warning. Links to other reports lead to their pages.
+    """
+    page = os.path.splitext(path)[0] + ".html"
+    try:
+        write(page, _REPORT_LINK.sub(r"](\1.html)", markdown), reports)
+    except Failure as error:
+        processes.say(f"WARNING: there is no page {page}: {error}")
+        return ""
+    return page
 
 
 def write(path, markdown, reports):

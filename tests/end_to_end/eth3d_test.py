@@ -516,6 +516,10 @@ class Pipeline(Case):
             self.assertGreater(len(links), 2)
             for link in links:
                 self.assertTrue(os.path.isfile(os.path.join(folder, link)), link)
+        # The same to open in a browser, with the points of the scene to turn.
+        html = [self.read(folder, name) for name in ("report.html", "office_dslr.html")]
+        self.assertIn('href="office_dslr.html"', html[0])
+        self.assertIn("THREE", html[1])
         # A photograph with the maps of both methods.
         self.assertIn("**dslr_images_undistorted/DSC_", pages[1])
         # The mean over this one scene, of which the other methods have not been run.

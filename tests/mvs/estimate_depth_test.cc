@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <cstring>
 #include <new>
 #include <stdexcept>
 #include <string>
@@ -42,14 +41,6 @@ Options PhotometricOptions() {
   options.filter = false;
   options.num_iterations = 3;
   return options;
-}
-
-bool Same(const Estimate& a, const Estimate& b) {
-  return std::memcmp(a.depth.data(), b.depth.data(),
-                     a.depth.size() * sizeof(float)) == 0 &&
-         std::memcmp(a.normal.data(), b.normal.data(),
-                     a.normal.size() * sizeof(Vec3)) == 0 &&
-         a.selection_prob == b.selection_prob && a.consistent == b.consistent;
 }
 
 TEST(EstimateDepth, FindsAPlaneFromRandomStart) {

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstring>
 #include <ctime>
 #include <stdexcept>
 #include <string>
@@ -71,14 +70,6 @@ void ExpectNothingWhereMasked(const Map<uint8_t>& mask,
       ASSERT_EQ(estimate.selection_prob[i * num_sources + m], 0) << i;
     }
   }
-}
-
-bool Same(const Estimate& a, const Estimate& b) {
-  return std::memcmp(a.depth.data(), b.depth.data(),
-                     a.depth.size() * sizeof(float)) == 0 &&
-         std::memcmp(a.normal.data(), b.normal.data(),
-                     a.normal.size() * sizeof(Vec3)) == 0 &&
-         a.selection_prob == b.selection_prob && a.consistent == b.consistent;
 }
 
 TEST(Mask, MaskedPixelsGetNoEstimateAndOthersDo) {

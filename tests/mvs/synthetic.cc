@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 
 namespace tapa {
 namespace {
@@ -167,6 +168,14 @@ Map<uint8_t> RandomImage(int width, int height, std::mt19937* random) {
   Map<uint8_t> image(width, height);
   std::generate_n(image.data(), image.size(), [&] { return uniform(*random); });
   return image;
+}
+
+bool Same(const Estimate& a, const Estimate& b) {
+  return std::memcmp(a.depth.data(), b.depth.data(),
+                     a.depth.size() * sizeof(float)) == 0 &&
+         std::memcmp(a.normal.data(), b.normal.data(),
+                     a.normal.size() * sizeof(Vec3)) == 0 &&
+         a.selection_prob == b.selection_prob && a.consistent == b.consistent;
 }
 
 }  // namespace tapa

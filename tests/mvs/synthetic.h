@@ -68,6 +68,9 @@ class SyntheticPlane {
 // Noise, independent from pixel to pixel.
 Map<uint8_t> RandomImage(int width, int height, std::mt19937* random);
 
+// Whether all that is known of a view is the same, bit for bit.
+bool Same(const Estimate& a, const Estimate& b);
+
 }  // namespace tapa
 
 #endif  // TAPA_TESTS_MVS_SYNTHETIC_H_
