@@ -48,12 +48,17 @@ class StereoPanel : public QWidget {
   ~StereoPanel() override { End(); }
 
  protected:
-  // The window stays open as long as the run goes on.
+  // As long as the run goes on, the window stays open, and what COLMAP enables
+  // when it is shown again stays blocked.
   bool eventFilter(QObject* object, QEvent* event) override {
-    if (object == window_ && event->type() == QEvent::Close &&
-        !stop_button_->isHidden()) {
-      event->ignore();
-      return true;
+    if (!stop_button_->isHidden()) {
+      if (object == window_ && event->type() == QEvent::Close) {
+        event->ignore();
+        return true;
+      }
+      if (object != window_ && event->type() == QEvent::EnabledChange) {
+        Block(static_cast<QWidget*>(object));
+      }
     }
     return QWidget::eventFilter(object, event);
   }
@@ -106,11 +111,18 @@ class StereoPanel : public QWidget {
   void BlockOthers() {
     for (QWidget* widget : window_->findChildren<QWidget*>(
              QString(), Qt::FindDirectChildrenOnly)) {
-      if (widget->isEnabled() && (qobject_cast<QPushButton*>(widget) ||
-                                  qobject_cast<QLineEdit*>(widget))) {
-        widget->setEnabled(false);
-        blocked_.insert(widget);
+      if (qobject_cast<QPushButton*>(widget) ||
+          qobject_cast<QLineEdit*>(widget)) {
+        widget->installEventFilter(this);
+        Block(widget);
       }
+    }
+  }
+
+  void Block(QWidget* widget) {
+    if (widget->isEnabled()) {
+      widget->setEnabled(false);
+      blocked_.insert(widget);
     }
   }
 
@@ -122,8 +134,6 @@ class StereoPanel : public QWidget {
     if (!news.finished_view.empty()) {
       AddMaps(news);
     }
-    // When the window is shown again, COLMAP enables some.
-    BlockOthers();
   }
 
   void AddMaps(const ProgressNews& news) {
