@@ -47,11 +47,11 @@ mark_as_advanced(CUDA_ENABLED TESTS_ENABLED CCACHE_ENABLED BOOST_STATIC
 add_subdirectory(${colmap_dir} ${CMAKE_BINARY_DIR}/colmap EXCLUDE_FROM_ALL)
 
 # These leave dense stereo out where there is no CUDA; here it needs none.
-set_source_files_properties(
+set(with_cuda
   ${colmap_dir}/src/controllers/automatic_reconstruction.cc
   ${colmap_dir}/src/exe/mvs.cc
-  ${colmap_dir}/src/ui/dense_reconstruction_widget.cc
-  TARGET_DIRECTORY colmap colmap_exe
+  ${colmap_dir}/src/ui/dense_reconstruction_widget.cc)
+set_source_files_properties(${with_cuda} TARGET_DIRECTORY colmap colmap_exe
   PROPERTIES COMPILE_DEFINITIONS CUDA_ENABLED)
 
 # To compile less: what the library has, too, is not compiled for the program again;
@@ -60,11 +60,25 @@ set_source_files_properties(
 get_target_property(sources colmap_exe SOURCES)
 list(REMOVE_ITEM sources feature.cc sfm.cc)
 set_target_properties(colmap_exe PROPERTIES SOURCES "${sources}")
-set_target_properties(colmap PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 7)
 get_target_property(sources colmap SOURCES)
-list(FILTER sources EXCLUDE REGEX "/src/(base|controllers|sfm|ui|util)/")
-set_source_files_properties(${sources} TARGET_DIRECTORY colmap
-  PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+set(merged ${sources})
+list(FILTER merged INCLUDE REGEX "/src/(base|controllers|sfm|ui|util)/[^/]*\\.cc$")
+list(REMOVE_ITEM merged ${with_cuda})
+list(REMOVE_ITEM sources ${merged})
+set(count 0)
+foreach(file ${merged})
+  math(EXPR number "${count} / 7")
+  math(EXPR count "${count} + 1")
+  file(RELATIVE_PATH file ${colmap_dir}/src ${file})
+  # UNITY_BUILD names files in full, so that ccache would know them in one folder only.
+  string(APPEND content_${number} "#include \"${file}\"\n")
+endforeach()
+foreach(number RANGE ${number})
+  set(file ${CMAKE_BINARY_DIR}/colmap/merged_${number}.cc)
+  file(CONFIGURE OUTPUT ${file} CONTENT "${content_${number}}" @ONLY)
+  list(APPEND sources ${file})
+endforeach()
+set_target_properties(colmap PROPERTIES SOURCES "${sources}")
 set_source_files_properties(${colmap_dir}/lib/PoissonRecon/PoissonRecon.cpp
   TARGET_DIRECTORY poisson_recon PROPERTIES COMPILE_OPTIONS -O2)
 

@@ -79,8 +79,9 @@ void VisitHostOptions(Options* options, const Visitor& visit) {
   VisitSearchOptions(&o.search, visit);
   option("colmap_defaults", &o.colmap_defaults, false,
          "Take COLMAP's own numbers, whatever is given here: one level, "
-         "num_iterations 5 in both passes, num_samples 15, window_step 1, all "
-         "random changes and of full size; they cost several times as much "
+         "num_iterations 5 in both passes, num_samples 15, window_step 1, "
+         "sigma_color 0.2, all random changes and of full size; they cost "
+         "several times as much "
          "(docs/results.md)");
   // What counts is what is in them, see views_record.h.
   option("mask_path", &o.mask_path, false,
