@@ -56,7 +56,7 @@ set_source_files_properties(${with_cuda} TARGET_DIRECTORY colmap colmap_exe
 
 # To compile less: what the library has, too, is not compiled for the program again;
 # files that include almost the same are compiled several at a time; and the one that
-# takes longest takes half the time with -O2, and meshes hardly slower.
+# takes longest takes half the time with -O2, for a mesher that is a sixth slower.
 get_target_property(sources colmap_exe SOURCES)
 list(REMOVE_ITEM sources feature.cc sfm.cc)
 set_target_properties(colmap_exe PROPERTIES SOURCES "${sources}")

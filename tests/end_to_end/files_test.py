@@ -63,10 +63,10 @@ class Workspace(tiny.TestCase):
         self.assert_success(self.fuse(**options))
         return self.points()
 
-    def expect_points(self, **options):
+    def expect_points(self, at_least=500, **options):
         self.assert_success(self.stereo(**options))
         for rule in RULES:
-            self.assertGreater(len(self.fused(**rule)), 400)
+            self.assertGreater(len(self.fused(**rule)), at_least)
 
 
 class Names(Workspace):
@@ -273,7 +273,7 @@ class Views(Workspace):
     def test_views_with_one_source(self):
         self.make(num_views=2)
         self.assertIn("filter_min_num_consistent", self.stereo().stdout)
-        self.expect_points()
+        self.expect_points(at_least=400)
 
 
 class Fusion(Workspace):

@@ -50,8 +50,9 @@ begin_root() {
 
 # Runs a command in the root. What is mounted for it vanishes with it.
 inside() {
-  local name lent=("$ccache:/root/.cache/ccache" "$scratch/archives:/var/cache/apt/archives")
-  local variables=(PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root "${environment[@]}")
+  local name lent=("$ccache:/var/cache/ccache" "$scratch/archives:/var/cache/apt/archives")
+  local variables=(PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/tmp
+    CCACHE_DIR=/var/cache/ccache "${environment[@]}")
   for name in http_proxy https_proxy no_proxy; do
     [[ -z ${!name:-} ]] || variables+=("$name=${!name}")
   done
