@@ -29,7 +29,7 @@ constexpr int kSkipped = 77;
 constexpr double kSamplesPerCycle = 4;
 constexpr double kFlopsPerCycle = 256;
 // Operations on a sample, as counted in SumSamples (src/mvs/cuda/patch.h).
-constexpr double kFlopsPerSample = 15;
+constexpr double kFlopsPerSample = 22;
 
 struct Mode {
   const char* name;
@@ -128,7 +128,7 @@ void WarmUp(int device, int width, int height, int num_sources) {
 void PrintLimits(const Result& result, size_t num_pixels, int num_sources) {
   const DeviceProfile& p = result.profile;
   // The kernel of the first costs measures every view once and little else.
-  const double samples = 36.0 * num_pixels * num_sources;
+  const double samples = 32.0 * num_pixels * num_sources;
   const double rate = samples / p.initialize_seconds;
   const double chip = p.num_multiprocessors * p.clock_hz;
   std::printf(

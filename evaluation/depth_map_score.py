@@ -64,11 +64,17 @@ class DepthMapScore:
         return _share(self.num_measurements_covered, self.num_measurements)
 
     def at(self, i):
-        """Completeness, accuracy and F1 at a tolerance. F1 is 0 if completeness is."""
+        """Completeness, accuracy and F1 at a tolerance. F1 is 0 if completeness is.
+
+        Shares of nothing are None: where few pixels are measured, the pixels of a small map
+        may all miss them.
+        """
         completeness = _share(int(self.num_complete[i]), self.num_measurements)
         accuracy = _share(int(self.num_accurate[i]), self.num_estimates_measured)
         if not completeness:
             return completeness, accuracy, completeness
+        if accuracy is None:
+            return completeness, None, None
         return completeness, accuracy, 2 * completeness * accuracy / (completeness + accuracy)
 
 

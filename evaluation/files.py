@@ -71,10 +71,12 @@ def write_text(path, text):
 
 
 def write_json(path, value):
-    """value: plain data or a model (schemas.py)."""
+    """value: plain data, with numbers of numpy, or a model (schemas.py)."""
     if not isinstance(value, (dict, list)):
         value = value.dict()
-    write_text(path, json.dumps(value, indent=2, ensure_ascii=False) + "\n")
+    # numpy 2 counts in numbers of its own.
+    text = json.dumps(value, indent=2, ensure_ascii=False, default=lambda number: number.item())
+    write_text(path, text + "\n")
 
 
 def read_json(path, model=None):

@@ -9,6 +9,7 @@
 
 #include "mvs/patch_match.h"
 #include "src/base/failure.h"
+#include "src/base/parallel.h"
 #include "src/colmap/engine_options.h"
 #include "src/colmap/interrupt.h"
 #include "src/colmap/option_list.h"
@@ -63,7 +64,8 @@ void PatchMatchController::Run() {
                     << std::endl;
           return tapa::TryDevice(device, tapa::EngineOptions(options_),
                                  stopped);
-        });
+        },
+        tapa::EffectiveNumThreads(options_.num_threads), plan.MaxMegapixels());
     if (!workers.message.empty()) {
       std::cout << workers.message << std::endl;
     }

@@ -555,6 +555,15 @@ int StereoPlan::NumDone() const {
   return static_cast<int>(std::count(is_done.begin(), is_done.end(), true));
 }
 
+double StereoPlan::MaxMegapixels() const {
+  double max = 0;
+  for (const ViewIndices& problem : problems) {
+    const SceneView& view = View(problem.reference, 0);
+    max = std::max(max, 1e-6 * view.width * view.height);
+  }
+  return max;
+}
+
 std::string StereoPlan::MapPath(MapKind kind, int view, Pass pass,
                                 int level) const {
   return location.MapPath(kind, View(view, level).name, pass, level);

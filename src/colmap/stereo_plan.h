@@ -63,6 +63,8 @@ struct StereoPlan {
   bool IsHelper(size_t problem) const { return problem >= num_results; }
   // Number of views whose result is there.
   int NumDone() const;
+  // Of the largest view that is computed, at level 0.
+  double MaxMegapixels() const;
   const SceneView& View(int view, int level) const {
     return views[level][view];
   }

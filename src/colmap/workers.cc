@@ -1,5 +1,6 @@
 #include "src/colmap/workers.h"
 
+#include <algorithm>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -8,10 +9,6 @@
 
 namespace tapa {
 namespace {
-
-// Of every GPU, where none is named: while one view is read or written, or the
-// CPU looks for its planes, the GPU sweeps the other.
-constexpr int kWorkersPerGpu = 2;
 
 void CheckIndex(int index, const DeviceList& list) {
   const int count = static_cast<int>(list.devices.size());
@@ -43,7 +40,8 @@ Workers CpuInstead(const std::string& why) {
 }
 
 Workers AllGpus(const DeviceList& list,
-                const std::function<std::string(int)>& what_is_wrong) {
+                const std::function<std::string(int)>& what_is_wrong,
+                int num_threads, double megapixels_per_view) {
   std::vector<int> sound;
   std::string wrong;
   for (int i = 0; i < static_cast<int>(list.devices.size()); ++i) {
@@ -59,8 +57,10 @@ Workers AllGpus(const DeviceList& list,
     return CpuInstead(wrong);
   }
   Workers workers;
+  const int times = WorkersPerGpu(num_threads, static_cast<int>(sound.size()),
+                                  megapixels_per_view);
   for (const int index : sound) {
-    workers.devices.insert(workers.devices.end(), kWorkersPerGpu, index);
+    workers.devices.insert(workers.devices.end(), times, index);
   }
   workers.message =
       ComputingOn(sound, list) + (wrong.empty() ? "" : "\n" + wrong + ".");
@@ -85,6 +85,16 @@ Workers NamedGpus(const std::vector<int>& indices, const DeviceList& list,
 
 }  // namespace
 
+int WorkersPerGpu(int num_threads, int num_gpus, double megapixels_per_view) {
+  constexpr int kMin = 2;
+  constexpr int kMax = 8;
+  constexpr double kMaxMegapixels = 32;
+  const int by_threads = num_threads / (2 * num_gpus);
+  const int by_memory =
+      static_cast<int>(std::min(kMaxMegapixels / megapixels_per_view, 1e3));
+  return std::clamp(std::min(by_threads, by_memory), kMin, kMax);
+}
+
 std::vector<int> ParseGpuIndices(const std::string& gpu_index) {
   static const std::regex list(" *[0-9]{1,9} *(, *[0-9]{1,9} *)*");
   std::vector<int> indices;
@@ -104,7 +114,8 @@ std::vector<int> ParseGpuIndices(const std::string& gpu_index) {
 
 Workers ChooseWorkers(bool use_gpu, const std::string& gpu_index,
                       const DeviceList& list,
-                      const std::function<std::string(int)>& try_device) {
+                      const std::function<std::string(int)>& try_device,
+                      int num_threads, double megapixels_per_view) {
   if (!use_gpu) {
     return {{kCpu}, ""};
   }
@@ -116,8 +127,9 @@ Workers ChooseWorkers(bool use_gpu, const std::string& gpu_index,
     return unusable.empty() ? try_device(index) : unusable;
   };
   const std::vector<int> named = ParseGpuIndices(gpu_index);
-  return named.empty() ? AllGpus(list, what_is_wrong)
-                       : NamedGpus(named, list, what_is_wrong);
+  return named.empty()
+             ? AllGpus(list, what_is_wrong, num_threads, megapixels_per_view)
+             : NamedGpus(named, list, what_is_wrong);
 }
 
 }  // namespace tapa

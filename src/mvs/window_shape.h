@@ -28,11 +28,17 @@ struct WindowShape {
   float spatial_scale = 0;
   float color_scale = 0;
 
-  // Whether the window has a sample at these multiples of the step from its
-  // centre, in pixels, neither of them farther than the radius.
-  TAPA_INLINE bool Contains(int dx, int dy) const {
-    return has_corners || (dx > -radius && dx < radius) ||
-           (dy > -radius && dy < radius);
+  // Samples are numbered row by row, without the corners that are missing.
+  TAPA_INLINE int NumSamples() const {
+    return row_samples * row_samples - (has_corners ? 0 : 4);
+  }
+  // Of a sample its place among row_samples * row_samples.
+  TAPA_INLINE int PlaceOfSample(int i) const {
+    const int before_last_row = row_samples * (row_samples - 1) - 2;
+    return has_corners           ? i
+           : i < row_samples - 2 ? i + 1
+           : i < before_last_row ? i + 2
+                                 : i + 3;
   }
 };
 

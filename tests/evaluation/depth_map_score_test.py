@@ -45,6 +45,10 @@ class ScoreTest(unittest.TestCase):
         found = score([1] * 4, [NAN, INF, -2, 0])
         self.expect(found, num_measurements=0, num_estimates=4, num_estimates_measured=0)
         self.assertEqual(found.at(0), (None, None, None))
+        # The only measurement is not at the centre of a pixel of the map.
+        found = score([[1]], [[1, 0], [0, 0]], [Tolerance(0.5, "m")])
+        self.expect(found, num_measurements=1, num_complete=[1], num_estimates_measured=0)
+        self.assertEqual(found.at(0), (1, None, None))
 
     def test_maps_of_other_sizes(self):
         small, large = [[1, 0]], [[1, 1, 1, 1], [1, 3, 0, 1]]

@@ -12,23 +12,21 @@ constexpr int kMaxLanes = 16;
 }  // namespace
 
 Window::Window(const Options& options) : WindowShape(options) {
-  num_samples = row_samples * row_samples - (has_corners ? 0 : 4);
+  num_samples = NumSamples();
   padded_samples = (num_samples + kMaxLanes - 1) / kMaxLanes * kMaxLanes;
   dx = MakeAligned<float>(padded_samples);
   dy = MakeAligned<float>(padded_samples);
   spatial_weight = MakeAligned<float>(padded_samples);
   color_weight = MakeAligned<float>(256);
 
-  int i = 0;
-  for (int y = -radius; y <= radius; y += step) {
-    for (int x = -radius; x <= radius; x += step) {
-      if (Contains(x, y)) {
-        dx[i] = static_cast<float>(x);
-        dy[i] = static_cast<float>(y);
-        spatial_weight[i++] = static_cast<float>(
-            std::exp(-(x * x + y * y) / (2 * sigma_spatial * sigma_spatial)));
-      }
-    }
+  for (int i = 0; i < num_samples; ++i) {
+    const int place = PlaceOfSample(i);
+    const int x = place % row_samples * step - radius;
+    const int y = place / row_samples * step - radius;
+    dx[i] = static_cast<float>(x);
+    dy[i] = static_cast<float>(y);
+    spatial_weight[i] = static_cast<float>(
+        std::exp(-(x * x + y * y) / (2 * sigma_spatial * sigma_spatial)));
   }
   for (int difference = 0; difference < 256; ++difference) {
     const double d = difference / 255.0 / sigma_color;

@@ -24,8 +24,8 @@ constexpr int kWarpSize = WarpLanes::kSize;
 // Lines of a block of warps: neighbours, which read the same parts of images.
 constexpr int kWarpsPerBlock = 4;
 constexpr int kBlockThreads = kWarpsPerBlock * kWarpSize;
-// 16 warps per multiprocessor: a texture unit needs about so many to be busy.
-// Turing has shared memory for 12 in the geometric pass.
+// 16 warps per multiprocessor: with more, of fewer registers, an H200 is no
+// faster (docs/results.md). Turing has shared memory for 12.
 constexpr int kMinBlocks = 4;
 // As COLMAP's kernel has.
 constexpr int kNaiveBlockThreads = 32;
@@ -107,9 +107,8 @@ __global__ void NaiveSweepPiecesKernel(
   const SourceCameras views = LoadCameras<CommonSizes>(task, shared_words);
   constexpr int kWords =
       (kViewArrays + kGeometricArrays) * CommonSizes::kMaxViews +
-      kPaddedFixedWords +
-      2 * CommonSizes::kRowSamples * CommonSizes::kRowSamples;
-  __align__(8) float words[kWords];
+      kPaddedFixedWords + kPatchSampleWords * CommonSizes::kNumSamples;
+  __align__(16) float words[kWords];
   const int line = begin + blockIdx.x * blockDim.x + threadIdx.x;
   if (line < end) {
     SweepPieces<SerialLanes, CommonSizes>(task, views,
@@ -265,9 +264,9 @@ int PiecesPerLaunch(const KernelLaunch& launch, const SweepTask& task) {
   const double samples_per_second =
       kSamplesPerCycle * 1e3 * DeviceAttribute(cudaDevAttrClockRate) *
       DeviceAttribute(cudaDevAttrMultiProcessorCount);
-  const double samples_per_piece =
-      kCorrelationsPerPixel * task.window.row_samples *
-      task.window.row_samples * task.piece_length * task.NumLines();
+  const double samples_per_piece = kCorrelationsPerPixel *
+                                   task.window.NumSamples() *
+                                   task.piece_length * task.NumLines();
   const double pieces = kSeconds * samples_per_second / samples_per_piece;
   return static_cast<int>(std::clamp<double>(pieces, 1, task.NumPieces()));
 }

@@ -11,40 +11,52 @@ namespace tapa {
 // Sizes that a kernel knows when it is compiled, so that addresses in the
 // scratch become constants and loops over the window are unrolled.
 
-// Most problems: a window of 6 by 6 samples, every second of 11 pixels, and up
-// to 32 views.
+// Most problems: a window of 6 by 6 samples without its corners, every second
+// of 11 pixels, and up to 32 views.
 struct CommonSizes {
   static constexpr int kMaxViews = 32;
   static constexpr int kRowSamples = 6;
-  static constexpr int kUnrolledRows = kRowSamples;
+  static constexpr int kNumSamples = 32;
+  // Of a lane, in a loop over the samples.
+  static constexpr int kUnrolledSamples = 8;
   static TAPA_INLINE int RowSamples(const WindowShape&) { return kRowSamples; }
+  static TAPA_INLINE int NumSamples(const WindowShape&) { return kNumSamples; }
   static TAPA_INLINE int Stride(int /*num_views*/) { return kMaxViews; }
   static bool Fits(const WindowShape& window, int num_views) {
-    return window.row_samples == kRowSamples && num_views <= kMaxViews;
+    return window.row_samples == kRowSamples &&
+           window.NumSamples() == kNumSamples && num_views <= kMaxViews;
   }
 };
 
 // All others.
 struct AnySizes {
-  static constexpr int kUnrolledRows = 1;
+  static constexpr int kUnrolledSamples = 4;
   static TAPA_INLINE int RowSamples(const WindowShape& window) {
     return window.row_samples;
+  }
+  static TAPA_INLINE int NumSamples(const WindowShape& window) {
+    return window.NumSamples();
   }
   static TAPA_INLINE int Stride(int num_views) { return (num_views + 3) & ~3; }
 };
 
-// A sample of the reference patch: its weight (all of them sum up to 1), and
-// the weight times (intensity - mean).
-struct alignas(8) PatchSample {
+// A sample of the reference patch: its weight (all of them sum up to 1), the
+// weight times (intensity - mean), and where it lies, in pixels from the
+// patch's centre.
+struct alignas(16) PatchSample {
   float weight;
   float weighted_intensity;
+  float dx;
+  float dy;
 };
+constexpr int kPatchSampleWords = sizeof(PatchSample) / 4;
 
-// Elements from one row of samples to the next: whole groups of lanes.
-template <class Lanes>
-TAPA_INLINE int PatchStride(int row_samples) {
-  return (row_samples + Lanes::kGroupSize - 1) / Lanes::kGroupSize *
-         Lanes::kGroupSize;
+// The samples of a patch with those without weight that fill the last group of
+// lanes.
+template <class Lanes, class Sizes>
+TAPA_INLINE int PaddedNumSamples(const WindowShape& window) {
+  return (Sizes::NumSamples(window) + Lanes::kGroupSize - 1) /
+         Lanes::kGroupSize * Lanes::kGroupSize;
 }
 
 // The working memory of one pixel, in 4-byte words: the arrays of PixelScratch
@@ -57,15 +69,15 @@ constexpr int kDepthNormalWords = sizeof(DepthNormal) / 4;
 constexpr int kVec3Words = sizeof(Vec3) / 4;
 constexpr int kFixedWords =
     kDrawBlock + kNumHypotheses * (kDepthNormalWords + kVec3Words + 1);
-// Keeps what follows, pairs of words, aligned.
-constexpr int kPaddedFixedWords = (kFixedWords + 1) / 2 * 2;
+// Keeps what follows, the samples, aligned.
+constexpr int kPaddedFixedWords = (kFixedWords + kPatchSampleWords - 1) /
+                                  kPatchSampleWords * kPatchSampleWords;
 
 // Of all but the geometric pass' arrays.
 template <class Lanes, class Sizes>
 TAPA_INLINE int CommonScratchWords(const WindowShape& window, int num_views) {
-  const int row_samples = Sizes::RowSamples(window);
   return kViewArrays * Sizes::Stride(num_views) + kPaddedFixedWords +
-         2 * row_samples * PatchStride<Lanes>(row_samples);
+         kPatchSampleWords * PaddedNumSamples<Lanes, Sizes>(window);
 }
 
 template <class Lanes, class Sizes>
@@ -75,7 +87,7 @@ TAPA_INLINE int ScratchWords(const WindowShape& window, int num_views,
          (geometric ? kGeometricArrays * Sizes::Stride(num_views) : 0);
 }
 
-// Lays out the scratch in `words`, which are aligned to 8 bytes. backward
+// Lays out the scratch in `words`, which are aligned to 16 bytes. backward
 // stays unset.
 template <class Lanes, class Sizes>
 TAPA_INLINE PixelScratch ArrangeScratch(const WindowShape& window,

@@ -135,10 +135,6 @@ Stream::~Stream() {
   }
 }
 
-void Stream::Wait() const {
-  CheckCuda(cudaStreamSynchronize(stream_), "computing on the GPU");
-}
-
 Event::Event() {
   CheckCuda(cudaEventCreateWithFlags(
                 &event_, cudaEventBlockingSync | cudaEventDisableTiming),

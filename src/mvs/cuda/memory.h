@@ -120,7 +120,6 @@ class Stream {
   Stream& operator=(const Stream&) = delete;
 
   cudaStream_t get() const { return stream_; }
-  void Wait() const;
 
  private:
   cudaStream_t stream_ = nullptr;

@@ -29,34 +29,37 @@ TAPA_INLINE PatchStatistics LoadPatch(const WindowShape& window,
                                       const Textures& textures, int row,
                                       int col, PatchSample* samples) {
   const int row_samples = Sizes::RowSamples(window);
-  const int stride = PatchStride<Lanes>(row_samples);
-  const int count = row_samples * stride;
+  const int count = Sizes::NumSamples(window);
+  const int padded_count = PaddedNumSamples<Lanes, Sizes>(window);
   const float center = textures.Reference(col, row);
   float weight_sum = 0.0f;
   float sum = 0.0f;
-  for (int i = Lanes::First(); i < count; i += Lanes::Step()) {
-    const int x = i % stride;
-    const int dx = x * window.step - window.radius;
-    const int dy = i / stride * window.step - window.radius;
+  for (int i = Lanes::First(); i < padded_count; i += Lanes::Step()) {
+    if (i >= count) {
+      samples[i] = {0.0f, 0.0f, 0.0f, 0.0f};
+      continue;
+    }
+    const int place = window.PlaceOfSample(i);
+    const int dx = place % row_samples * window.step - window.radius;
+    const int dy = place / row_samples * window.step - window.radius;
     const float intensity = textures.Reference(col + dx, row + dy);
     const float difference = intensity - center;
-    // What pads a row has no weight, and what the window is without.
     const float weight =
-        x < row_samples && window.Contains(dx, dy)
-            ? ExpNegative(window.color_scale * difference * difference +
-                          window.spatial_scale * (dx * dx + dy * dy))
-            : 0.0f;
-    samples[i] = {weight, intensity};
+        ExpNegative(window.color_scale * difference * difference +
+                    window.spatial_scale * (dx * dx + dy * dy));
+    samples[i] = {weight, intensity, static_cast<float>(dx),
+                  static_cast<float>(dy)};
     weight_sum += weight;
     sum += weight * intensity;
   }
   const float inv_weight = 1.0f / Lanes::Sum(weight_sum);
   const float mean = inv_weight * Lanes::Sum(sum);
   float variance = 0.0f;
-  for (int i = Lanes::First(); i < count; i += Lanes::Step()) {
+  for (int i = Lanes::First(); i < padded_count; i += Lanes::Step()) {
     const float centered = samples[i].weighted_intensity - mean;
     const float weight = inv_weight * samples[i].weight;
-    samples[i] = {weight, weight * centered};
+    samples[i].weight = weight;
+    samples[i].weighted_intensity = weight * centered;
     variance += weight * centered * centered;
   }
   variance = Lanes::Sum(variance);
@@ -72,34 +75,26 @@ TAPA_INLINE Moments SumSamples(const WindowShape& window,
                                const Warp& warp, float mean,
                                const PatchSample* samples) {
   constexpr float kOutside = -2.0f;
-  const int row_samples = Sizes::RowSamples(window);
-  const int stride = PatchStride<Lanes>(row_samples);
-  const float skip = static_cast<float>(Lanes::kGroupSize * window.step);
-  const Vec3 step = skip * warp.step_x;
+  const int count = PaddedNumSamples<Lanes, Sizes>(window);
   Moments moments = {0.0f, 0.0f, 0.0f};
   // Windows behind a camera are rare: their code stays small.
-  TAPA_UNROLL((kInFront ? Sizes::kUnrolledRows : 1))
-  for (int y = 0; y < row_samples; ++y) {
-    Vec3 p = warp.At(
-        static_cast<float>(Lanes::GroupLane() * window.step - window.radius),
-        static_cast<float>(y * window.step - window.radius));
-    for (int x = Lanes::GroupLane(); x < stride; x += Lanes::kGroupSize) {
-      const float inv_z = Reciprocal(p.z);
-      float u = p.x * inv_z;
-      float v = p.y * inv_z;
-      if (!kInFront) {
-        // Also NaN.
-        u = p.z > 0.0f && u > kOutside ? u : kOutside;
-        v = v > kOutside ? v : kOutside;
-      }
-      const float sample = textures.Source(m, u, v) - mean;
-      const PatchSample patch = samples[y * stride + x];
-      const float weighted = patch.weight * sample;
-      moments.sum += weighted;
-      moments.squared_sum += weighted * sample;
-      moments.product_sum += patch.weighted_intensity * sample;
-      p = {p.x + step.x, p.y + step.y, p.z + step.z};
+  TAPA_UNROLL((kInFront ? Sizes::kUnrolledSamples : 1))
+  for (int i = 0; i < count; i += Lanes::kGroupSize) {
+    const PatchSample patch = samples[i + Lanes::GroupLane()];
+    const Vec3 p = warp.At(patch.dx, patch.dy);
+    const float inv_z = Reciprocal(p.z);
+    float u = p.x * inv_z;
+    float v = p.y * inv_z;
+    if (!kInFront) {
+      // Also NaN.
+      u = p.z > 0.0f && u > kOutside ? u : kOutside;
+      v = v > kOutside ? v : kOutside;
     }
+    const float sample = textures.Source(m, u, v) - mean;
+    const float weighted = patch.weight * sample;
+    moments.sum += weighted;
+    moments.squared_sum += weighted * sample;
+    moments.product_sum += patch.weighted_intensity * sample;
   }
   return moments;
 }
