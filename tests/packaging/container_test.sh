@@ -112,7 +112,8 @@ reconstruct() {
   PYTHONPATH=$source_dir/tests/end_to_end python3 -B -c \
     "import sys, tiny_workspace; tiny_workspace.make_workspace(sys.argv[1])" \
     "$root/tmp/workspace"
-  inside colmap patch_match_stereo -h | grep -q PatchMatchStereo.num_threads ||
+  # Not into grep -q, which would go before the program has said all.
+  [[ $(inside colmap patch_match_stereo -h) == *PatchMatchStereo.num_threads* ]] ||
     fail "there is no help"
   inside colmap patch_match_stereo --workspace_path /tmp/workspace ||
     fail "no stereo"
