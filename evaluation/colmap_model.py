@@ -60,8 +60,13 @@ class View:
 
 def rotation_of(quaternion):
     """Rotation matrix, (3, 3), of (w, x, y, z), which need not have unit length."""
-    from scipy.spatial.transform import Rotation  # Takes a while.
-    return Rotation.from_quat(np.roll(quaternion, -1)).as_matrix()
+    length = np.linalg.norm(quaternion)
+    if not length > 0:
+        raise ValueError(f"{quaternion} is no rotation")
+    w, x, y, z = np.divide(quaternion, length)
+    return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+                     [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+                     [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]])
 
 
 def _lines(path):

@@ -7,10 +7,9 @@ path in the message; a file appears under its name only when it is complete.
 import os
 import re
 
-import cv2
 import numpy as np
 
-from . import files, images
+from . import files
 from .processes import Failure
 
 PNG_STEPS_PER_METRE = 4000
@@ -28,6 +27,8 @@ def _known(depth):
 
 def read_png(path, steps_per_metre=PNG_STEPS_PER_METRE):
     """A 16-bit grey PNG, in metres."""
+    import cv2  # Other maps can be read where there is none.
+    from . import images
     values = images.read(path, cv2.IMREAD_UNCHANGED)
     if values.dtype != np.uint16 or values.ndim != 2:
         raise Failure(f"{path} is not a 16-bit grey image")

@@ -6,7 +6,7 @@ As a program it prints those of DATA/sparse that are in DATA/images, a line each
 import os
 import sys
 
-from . import binary_model, command_line, files
+from . import binary_model, files
 
 
 def read_names(folder):
@@ -46,4 +46,5 @@ def main(words=None):
 
 
 if __name__ == "__main__":
+    from . import command_line  # What reads names alone does without.
     sys.exit(command_line.run(main))

@@ -26,7 +26,10 @@ evaluation=(
   curl libjs-three p7zip-full python3 python3-jinja2 python3-markdown
   python3-matplotlib python3-numpy python3-opencv python3-pydantic python3-scipy
 )
-tests=(libbenchmark-dev libboost-context-dev libgtest-dev)
+tests=(
+  libbenchmark-dev libboost-context-dev libgtest-dev
+  pybind11-dev python3-dev python3-setuptools  # The Python package.
+)
 # Come along with what else of the tests is installed, but are not missed: povray renders
 # scenes of examples/, and chromium looks at pages (their tests are skipped without them).
 optional=()

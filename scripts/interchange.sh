@@ -21,6 +21,7 @@ set -euo pipefail
 
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(dirname "$here")
+source "$here/python_environment.sh"
 requirement=${PYCOLMAP:-pycolmap}
 size=${MAX_IMAGE_SIZE:-360}
 
@@ -57,33 +58,13 @@ mkdir -p "$out/wheels" "$logs"
 temporary=$(mktemp -d "$out/environment.XXXXXX")
 trap 'rm -rf "$temporary"' EXIT
 
-# Makes an environment with the first Python here that can.
-make_environment() {
-  local candidate
-  for candidate in python3 /usr/bin/python3; do
-    rm -rf "$temporary/venv"
-    if "$candidate" -m venv "$temporary/venv" >"$logs/venv.log" 2>&1; then
-      return 0
-    fi
-  done
-  return 1
-}
-
-# The newest package if the index answers, else the one kept from last time.
-install_pycolmap() {
-  local pip=("$temporary/venv/bin/pip" --disable-pip-version-check)
-  local from=(--only-binary :all: --find-links "$out/wheels" "$requirement")
-  "${pip[@]}" --retries 1 --timeout 20 download --dest "$out/wheels" \
-    "${from[@]}" >"$logs/pip.log" 2>&1 || true
-  # Without the index, so that the download above is what is installed.
-  "${pip[@]}" install --no-index "${from[@]}" >>"$logs/pip.log" 2>&1
-}
-
-make_environment ||
+environment=$temporary/venv
+make_environment "$environment" "$logs/venv.log" ||
   skip "python3 cannot make virtual environments here (the package python3-venv is missing)"
-install_pycolmap ||
+download_packages "$environment" "$out/wheels" "$logs/pip.log" "$requirement"
+install_packages "$environment" "$out/wheels" "$logs/pip.log" "$requirement" ||
   skip "PyPI cannot be reached, or has no $requirement for this machine ($logs/pip.log)"
-python=$temporary/venv/bin/python
+python=$environment/bin/python
 
 # Runs a command whose output only matters when it fails.
 step() {

@@ -1,10 +1,10 @@
 """How many views confirm what a photograph sees, as maps of numbers."""
 
 import array
+import functools
 import os
 import re
 
-import cv2
 import numpy as np
 
 from .. import blocks, files
@@ -52,7 +52,16 @@ def seen_by(view, depth, points, confidence, width):
     for block in blocks.slices(len(points)):
         _draw_seen(values, view, depth, points[block].astype(np.float64), confidence[block])
     # Points may be fewer than pixels.
-    return np.where(values > 0, values, cv2.dilate(values, np.ones((3, 3), np.uint8)))
+    return np.where(values > 0, values, _largest_around(values))
+
+
+def _largest_around(values):
+    """Of the 3 x 3 pixels around each, the largest value; values are not negative."""
+    height, width = values.shape
+    padded = np.pad(values, 1)
+    return functools.reduce(np.maximum, (
+        padded[row:row + height, column:column + width] for row in range(3)
+        for column in range(3)))
 
 
 def _draw_seen(values, view, depth, points, confidence):

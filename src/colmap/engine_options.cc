@@ -16,7 +16,7 @@ using colmap::mvs::PatchMatchOptions;
 
 void CheckOptions(const PatchMatchOptions& options) {
   try {
-    VisitOptions(options, [](const OptionEntry& entry, const auto* value) {
+    VisitOptions(&options, [](const OptionEntry& entry, const auto* value) {
       CheckOption(entry, *value);
     });
     CheckOption("tapa_debug", options.tapa_debug,

@@ -8,6 +8,7 @@
 #include <iostream>
 #include <new>
 
+#include "src/colmap/guest.h"
 #include "src/colmap/step_bar.h"
 
 namespace tapa {
@@ -16,8 +17,21 @@ namespace {
 FatalErrors* innermost = nullptr;
 std::atomic<bool> has_failed{false};
 
+// One line of what went wrong.
+void Report(const std::string& line) {
+  std::cout << std::flush;
+  if (IsGuest()) {
+    TellHost(line);
+  } else {
+    std::cerr << "ERROR: " << line << std::endl;
+  }
+}
+
 // Other threads may still run.
 [[noreturn]] void ExitNow() {
+  if (IsGuest()) {
+    EndGuestThread();
+  }
   std::cout << std::flush;
   std::cerr << std::flush;
   _exit(EXIT_FAILURE);
@@ -49,8 +63,12 @@ void PrintException(const std::exception_ptr& exception) {
 FatalErrors::FatalErrors(const std::string& context)
     : context_(context),
       stderr_threshold_(FLAGS_stderrthreshold),
+      outer_terminate_(std::set_terminate(&Terminate)),
       outer_(innermost) {
   innermost = this;
+  if (IsGuest()) {
+    google::InstallFailureFunction(&EndGuestThread);
+  }
   google::AddLogSink(this);
   // Otherwise the library would print a line of its own as well.
   FLAGS_stderrthreshold = google::NUM_SEVERITIES;
@@ -60,6 +78,7 @@ FatalErrors::~FatalErrors() {
   FLAGS_stderrthreshold = stderr_threshold_;
   google::RemoveLogSink(this);
   innermost = outer_;
+  std::set_terminate(outer_terminate_);
 }
 
 void FatalErrors::send(google::LogSeverity severity, const char*, const char*,
@@ -74,16 +93,16 @@ void FatalErrors::send(google::LogSeverity severity, const char*, const char*,
       c = ' ';
     }
   }
-  std::cout << std::flush;
-  std::cerr << "ERROR: " << context_ << ": " << text << std::endl;
-  if (severity == google::GLOG_FATAL) {
+  Report(context_ + ": " + text);
+  // A guest's thread must not go to sleep with the library's lock: the library
+  // calls EndGuestThread when it has let it go.
+  if (severity == google::GLOG_FATAL && !IsGuest()) {
     ExitNow();
   }
 }
 
 void PrintError(const std::string& text) {
-  std::cout << std::flush;
-  std::cerr << "ERROR: " << text << "." << std::endl;
+  Report(text + ".");
   has_failed = true;
 }
 
@@ -92,7 +111,6 @@ int RunCommand(const std::string& name,
                char** argv) {
   const FatalErrors fatal_errors(name);
   const StepBar step_bar;
-  std::set_terminate(&Terminate);
   try {
     const int status = command(argc, argv);
     return status == EXIT_SUCCESS && has_failed ? EXIT_FAILURE : status;

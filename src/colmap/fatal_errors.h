@@ -4,6 +4,7 @@
 #include <glog/logging.h>
 
 #include <ctime>
+#include <exception>
 #include <functional>
 #include <string>
 
@@ -13,7 +14,9 @@ namespace tapa {
 
 // While one of these lives, what COLMAP checks with CHECK and LOG(FATAL) ends
 // the program with one line "ERROR: CONTEXT: ..." and exit status 1, in place
-// of a stack trace and an abort. The innermost one's context counts.
+// of a stack trace and an abort, and so does an exception that a thread does
+// not catch. The innermost one's context counts. Of a guest (guest.h) it ends
+// the thread.
 class FatalErrors : public google::LogSink {
  public:
   explicit FatalErrors(const std::string& context);
@@ -30,6 +33,7 @@ class FatalErrors : public google::LogSink {
  private:
   const std::string context_;
   const int stderr_threshold_;
+  const std::terminate_handler outer_terminate_;
   FatalErrors* const outer_;
 };
 

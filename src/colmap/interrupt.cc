@@ -1,5 +1,7 @@
 #include "src/colmap/interrupt.h"
 
+#include "src/colmap/guest.h"
+
 namespace tapa {
 namespace {
 
@@ -14,8 +16,11 @@ void NoteSignal(int signal) {
 
 }  // namespace
 
-Interrupt::Interrupt() {
+Interrupt::Interrupt() : is_off_(IsGuest()) {
   received_signal = 0;
+  if (is_off_) {
+    return;
+  }
   struct sigaction action = {};
   action.sa_handler = NoteSignal;
   action.sa_flags = SA_RESTART;
@@ -25,6 +30,9 @@ Interrupt::Interrupt() {
 }
 
 Interrupt::~Interrupt() {
+  if (is_off_) {
+    return;
+  }
   sigaction(SIGINT, &old_int_, nullptr);
   sigaction(SIGTERM, &old_term_, nullptr);
 }

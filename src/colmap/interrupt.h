@@ -7,7 +7,8 @@ namespace tapa {
 
 // While one of these lives, the first SIGINT or SIGTERM is only noted, so that
 // the work can end in order; a second one ends the program at once. The
-// handlers found before are restored at the end. Do not nest.
+// handlers found before are restored at the end. Do not nest. Of a guest
+// (guest.h) none is noted.
 class Interrupt {
  public:
   Interrupt();
@@ -20,6 +21,7 @@ class Interrupt {
   int Signal() const;
 
  private:
+  const bool is_off_;
   struct sigaction old_int_;
   struct sigaction old_term_;
 };

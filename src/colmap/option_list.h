@@ -8,25 +8,25 @@
 namespace tapa {
 
 // Calls visit(entry, pointer to the value) for every option of dense stereo:
-// COLMAP's own, then those of HostOptions.
-template <typename Visitor>
-void VisitOptions(const colmap::mvs::PatchMatchOptions& options,
-                  const Visitor& visit) {
+// COLMAP's own, then those of HostOptions. Options:
+// colmap::mvs::PatchMatchOptions, or the same as const.
+template <typename Options, typename Visitor>
+void VisitOptions(Options* options, const Visitor& visit) {
   using Range = OptionRange;
-  const auto option = [&visit](const char* name, const auto* member,
+  const auto option = [&visit](const char* name, auto* member,
                                bool changes_maps, const Range& range = {}) {
     visit(OptionEntry{name, "", range, changes_maps}, member);
   };
-  option("max_image_size", &options.max_image_size, true,
+  option("max_image_size", &options->max_image_size, true,
          Range::Positive().OrMinusOne("no limit"));
-  option("gpu_index", &options.gpu_index, false);
-  option("depth_min", &options.depth_min, true);
-  option("depth_max", &options.depth_max, true);
-  VisitSharedOptions(visit, &options);
-  option("cache_size", &options.cache_size, false, Range::Positive());
-  option("allow_missing_files", &options.allow_missing_files, false);
-  option("write_consistency_graph", &options.write_consistency_graph, false);
-  VisitHostOptions(&options, visit);
+  option("gpu_index", &options->gpu_index, false);
+  option("depth_min", &options->depth_min, true);
+  option("depth_max", &options->depth_max, true);
+  VisitSharedOptions(visit, options);
+  option("cache_size", &options->cache_size, false, Range::Positive());
+  option("allow_missing_files", &options->allow_missing_files, false);
+  option("write_consistency_graph", &options->write_consistency_graph, false);
+  VisitHostOptions(options, visit);
 }
 
 }  // namespace tapa

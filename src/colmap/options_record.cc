@@ -45,7 +45,7 @@ std::string ToText(double value) {
 
 OptionValues OptionsOfMaps(const PatchMatchOptions& options) {
   OptionValues values;
-  VisitOptions(options, [&](const OptionEntry& entry, const auto* value) {
+  VisitOptions(&options, [&](const OptionEntry& entry, const auto* value) {
     if (entry.changes_maps) {
       values[entry.name] = ToText(*value);
     }

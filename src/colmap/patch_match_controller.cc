@@ -11,6 +11,7 @@
 #include "src/base/failure.h"
 #include "src/base/parallel.h"
 #include "src/colmap/engine_options.h"
+#include "src/colmap/fatal_errors.h"
 #include "src/colmap/interrupt.h"
 #include "src/colmap/option_list.h"
 #include "src/colmap/stereo_plan.h"
@@ -24,7 +25,7 @@ namespace mvs {
 
 void PatchMatchOptions::Print() const {
   PrintHeading2("PatchMatchOptions");
-  tapa::VisitOptions(*this,
+  tapa::VisitOptions(this,
                      [](const tapa::OptionEntry& entry, const auto* value) {
                        std::cout << entry.name << ": " << *value << std::endl;
                      });
@@ -81,11 +82,11 @@ void PatchMatchController::Run() {
                 << std::endl;
     }
   } catch (const std::bad_alloc&) {
-    std::cerr << "ERROR: There is not enough memory; lower "
-                 "--PatchMatchStereo.max_image_size or cache_size."
-              << std::endl;
+    tapa::PrintError(
+        "There is not enough memory; lower --PatchMatchStereo.max_image_size "
+        "or cache_size");
   } catch (const std::exception& error) {
-    std::cerr << "ERROR: " << error.what() << "." << std::endl;
+    tapa::PrintError(error.what());
   }
   GetTimer().PrintMinutes();
 }

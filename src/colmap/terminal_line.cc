@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "src/colmap/guest.h"
 #include "util/string.h"
 
 namespace tapa {
@@ -31,7 +32,8 @@ std::string TimeToGo(double share, double seconds) {
       share > 0 ? TimeText(seconds * (1 - share) / share).c_str() : "?");
 }
 
-TerminalLine::TerminalLine() : is_terminal_(isatty(STDERR_FILENO)) {}
+TerminalLine::TerminalLine()
+    : is_terminal_(!IsGuest() && isatty(STDERR_FILENO)) {}
 
 void TerminalLine::Show(const std::string& text) {
   if (is_terminal_) {

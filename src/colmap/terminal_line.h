@@ -11,7 +11,7 @@ std::string TimeToGo(double share, double seconds);
 
 // The last line on the terminal, renewed in place. It goes to stderr, so that
 // what is printed to stdout can be kept in a log meanwhile. Where stderr is no
-// terminal nothing is shown.
+// terminal, and of a guest (guest.h), nothing is shown.
 class TerminalLine {
  public:
   TerminalLine();
