@@ -25,6 +25,7 @@ struct HostOptions {
   SearchOptions search;
   bool colmap_defaults = false;
   std::string mask_path;
+  std::string prior_path;
   TapaOptions tapa;
   std::string tapa_debug;
 };
@@ -88,6 +89,10 @@ void VisitHostOptions(Options* options, const Visitor& visit) {
          "Folder of masks of the workspace's photographs, with the names of "
          "these and .png after them: where they are black, nothing is "
          "computed; empty: none");
+  option("prior_path", &o.prior_path, false,
+         "Folder of depth maps from elsewhere (EXR, PFM, 16-bit PNG, NPY; of "
+         "any size and unit), with the names of the photographs: they are "
+         "fitted to the sparse points and tried as hypotheses; empty: none");
   VisitTapaOptions(&o.tapa, visit);
   option("tapa_debug", &o.tapa_debug, false,
          "Folder for pictures of every step of TAPA for every view that the "

@@ -12,6 +12,7 @@
 #include "src/base/parallel.h"
 #include "src/colmap/engine_options.h"
 #include "src/colmap/fatal_errors.h"
+#include "src/colmap/folder_lock.h"
 #include "src/colmap/interrupt.h"
 #include "src/colmap/option_list.h"
 #include "src/colmap/stereo_plan.h"
@@ -57,6 +58,7 @@ void PatchMatchController::Run() {
   const auto stopped = [&] { return interrupt.Signal() != 0 || IsStopped(); };
   exit_status_ = EXIT_FAILURE;
   try {
+    const tapa::FolderLock lock(workspace_path_);
     tapa::StereoPlan plan = tapa::MakeStereoPlan(options_, location);
     const tapa::Workers workers = tapa::ChooseWorkers(
         options_.use_gpu, options_.gpu_index, tapa::FindDevices(),

@@ -132,6 +132,11 @@ std::unique_ptr<ProblemInput> ProblemReader::Read(
     to.normal = std::move(start.normal);
   }
   to.mask = ReadMask(pass.options.mask_path, reference);
+  // A first guess; what a pass starts from is better.
+  const auto prior = plan_.priors.find(problem.reference);
+  if (prior != plan_.priors.end() && !pass.has_start) {
+    to.prior = ReadPrior(prior->second);
+  }
   if (pass.options.tapa.enabled) {
     input->color = ReadColorPhoto(reference);
     to.reference_color = &*input->color;

@@ -226,12 +226,12 @@ std::vector<PassPlan> Passes(const PatchMatchOptions& options,
   return passes;
 }
 
-void CheckMasksOf(const StereoPlan& plan, const std::string& folder) {
+std::vector<int> ViewsToCompute(const StereoPlan& plan) {
   std::vector<int> views;
   for (const ViewIndices& problem : plan.problems) {
     views.push_back(problem.reference);
   }
-  CheckMasks(folder, plan.views[0], views);
+  return views;
 }
 
 // A filter that asks for more views than there are makes do with all of them.
@@ -384,13 +384,17 @@ void FindNeeded(StereoPlan* plan) {
 // photographs.
 ViewsRecord CurrentInputs(const StereoPlan& plan,
                           const std::vector<SceneView>& views,
-                          const std::string& mask_folder) {
+                          const PatchMatchOptions& options) {
   std::map<int, ViewFiles> files;
   const auto describe = [&](int view) {
     if (files.count(view) == 0) {
-      const std::string mask = MaskPath(mask_folder, views[view].name);
+      const std::string& name = views[view].name;
+      const auto describe_any = [](const std::string& path) {
+        return path.empty() ? "" : DescribeFile(path);
+      };
       files[view] = {DescribeFile(views[view].image_path),
-                     mask.empty() ? "" : DescribeFile(mask)};
+                     describe_any(MaskPath(options.mask_path, name)),
+                     describe_any(PriorPath(options.prior_path, name))};
     }
   };
   ViewsRecord inputs;
@@ -594,10 +598,12 @@ StereoPlan MakeStereoPlan(const PatchMatchOptions& options,
   AddHelpers(options, &plan);
   CheckDepthRanges(options, plan);
   WarnOfFilter(options, plan);
-  CheckMasksOf(plan, options.mask_path);
+  const std::vector<int> views = ViewsToCompute(plan);
+  CheckMasks(options.mask_path, plan.views[0], views);
+  plan.priors = FitPriors(options.prior_path, model, plan.views[0], views);
   plan.passes = Passes(options, plan);
-  const ViewsRecord inputs = CurrentInputs(
-      plan, SceneViews(model, /* max_image_size */ -1), options.mask_path);
+  const ViewsRecord inputs =
+      CurrentInputs(plan, SceneViews(model, /* max_image_size */ -1), options);
   CheckRecords(inputs, &plan);
   CheckMaps(&plan);
   FindNeeded(&plan);

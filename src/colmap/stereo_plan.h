@@ -1,6 +1,7 @@
 #ifndef TAPA_SRC_COLMAP_STEREO_PLAN_H_
 #define TAPA_SRC_COLMAP_STEREO_PLAN_H_
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "src/base/map_files.h"
 #include "src/colmap/options_record.h"
 #include "src/colmap/pass.h"
+#include "src/colmap/priors.h"
 #include "src/colmap/problem_config.h"
 #include "src/colmap/views.h"
 #include "src/colmap/views_record.h"
@@ -55,6 +57,8 @@ struct StereoPlan {
   // others needs their photometric maps.
   std::vector<ViewIndices> problems;
   size_t num_results = 0;
+  // By view; others have none.
+  std::map<int, FittedPrior> priors;
   // One after the other; the maps of the last one are the result.
   std::vector<PassPlan> passes;
   // Whether maps of coarse levels are there that this run cannot go on with.

@@ -20,9 +20,9 @@ namespace {
 
 constexpr char kComment[] =
     "# What the maps of this pass were made from: camera, photograph (and "
-    "masks), names, cameras and photographs of the sources, name of the "
-    "view.\n";
-// Between photograph and masks.
+    "masks and priors), names, cameras and photographs of the sources, name of "
+    "the view.\n";
+// Between photograph, masks and priors.
 constexpr char kPlus = '+';
 
 std::string Hex(const Hash& hash) {
@@ -40,14 +40,37 @@ std::string DescribeAll(const std::multiset<std::string>& texts) {
   return Hex(hash);
 }
 
-// Empty if there are none.
-std::string DescribeMasks(const std::string& own,
-                          const std::multiset<std::string>& of_sources) {
-  const bool has_masks =
+// Files that a view and its sources may have; empty if there are none.
+std::string DescribeAny(const std::string& own,
+                        const std::multiset<std::string>& of_sources) {
+  const bool has_files =
       !own.empty() ||
       std::any_of(of_sources.begin(), of_sources.end(),
-                  [](const std::string& mask) { return !mask.empty(); });
-  return has_masks ? own + "of" + DescribeAll(of_sources) : "";
+                  [](const std::string& file) { return !file.empty(); });
+  return has_files ? own + "of" + DescribeAll(of_sources) : "";
+}
+
+// As one field of a line; without masks or priors as before there were any.
+std::string PhotoMasksAndPriors(const ViewInputs& inputs) {
+  std::string text = inputs.photo;
+  if (!inputs.masks.empty() || !inputs.priors.empty()) {
+    text += kPlus + inputs.masks;
+  }
+  if (!inputs.priors.empty()) {
+    text += kPlus + inputs.priors;
+  }
+  return text;
+}
+
+// Takes off a text what stands behind the first kPlus in it.
+std::string CutOffBehindPlus(std::string* text) {
+  const size_t plus = text->find(kPlus);
+  if (plus == std::string::npos) {
+    return "";
+  }
+  const std::string rest = text->substr(plus + 1);
+  text->resize(plus);
+  return rest;
 }
 
 }  // namespace
@@ -91,11 +114,13 @@ ViewInputs DescribeInputs(const std::vector<SceneView>& views, int reference,
   std::multiset<std::string> cameras;
   std::multiset<std::string> source_photos;
   std::multiset<std::string> source_masks;
+  std::multiset<std::string> source_priors;
   for (const int source : sources) {
     names.insert(views[source].name);
     cameras.insert(DescribeCamera(views[source]));
     source_photos.insert(files.at(source).photo);
     source_masks.insert(files.at(source).mask);
+    source_priors.insert(files.at(source).prior);
   }
   const ViewFiles& own = files.at(reference);
   return {DescribeCamera(views[reference]),
@@ -103,12 +128,13 @@ ViewInputs DescribeInputs(const std::vector<SceneView>& views, int reference,
           DescribeAll(names),
           DescribeAll(cameras),
           DescribeAll(source_photos),
-          DescribeMasks(own.mask, source_masks)};
+          DescribeAny(own.mask, source_masks),
+          DescribeAny(own.prior, source_priors)};
 }
 
 std::string DescribeDifference(const ViewInputs& recorded,
                                const ViewInputs& current) {
-  // Other sources have other cameras, photographs and masks.
+  // Other sources have other cameras, photographs, masks and priors.
   const bool same_sources = recorded.sources == current.sources;
   std::string text;
   const auto add = [&text](bool differs, const char* what) {
@@ -123,6 +149,7 @@ std::string DescribeDifference(const ViewInputs& recorded,
           (same_sources && recorded.source_photos != current.source_photos),
       "photographs");
   add(same_sources && recorded.masks != current.masks, "masks");
+  add(same_sources && recorded.priors != current.priors, "priors");
   add(!same_sources, "source images");
   return text;
 }
@@ -142,11 +169,8 @@ ViewsRecord ReadViewsRecord(const std::string& path) {
     ViewInputs inputs;
     fields >> inputs.camera >> inputs.photo >> inputs.sources >>
         inputs.source_cameras >> inputs.source_photos;
-    const size_t plus = inputs.photo.find(kPlus);
-    if (plus != std::string::npos) {
-      inputs.masks = inputs.photo.substr(plus + 1);
-      inputs.photo.resize(plus);
-    }
+    inputs.masks = CutOffBehindPlus(&inputs.photo);
+    inputs.priors = CutOffBehindPlus(&inputs.masks);
     std::string name;
     if (fields.get() != ' ' || !std::getline(fields, name)) {
       throw Failure(path +
@@ -165,10 +189,7 @@ ViewsRecord ReadViewsRecord(const std::string& path) {
 void WriteViewsRecord(const std::string& path, const ViewsRecord& record) {
   std::string text = kComment;
   for (const auto& [name, inputs] : record) {
-    // Without masks as before there were any.
-    const std::string photo = inputs.masks.empty()
-                                  ? inputs.photo
-                                  : inputs.photo + kPlus + inputs.masks;
+    const std::string photo = PhotoMasksAndPriors(inputs);
     for (const std::string* field :
          {&inputs.camera, &photo, &inputs.sources, &inputs.source_cameras,
           &inputs.source_photos}) {

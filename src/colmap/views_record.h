@@ -9,7 +9,8 @@
 
 namespace tapa {
 
-// Maps do not say which poses, cameras, photographs and masks made them. A
+// Maps do not say which poses, cameras, photographs, masks
+// and priors made them. A
 // small text file beside them does, one for each pass and a line for each view,
 // so that maps are not kept for those of another model.
 
@@ -23,8 +24,9 @@ struct ViewInputs {
   std::string sources;
   std::string source_cameras;
   std::string source_photos;
-  // Masks of the view and of its sources; empty: there are none.
+  // Masks and priors of the view and of its sources; empty: there are none.
   std::string masks;
+  std::string priors;
 };
 
 // What tells the files of a view from others, each by DescribeFile.
@@ -32,6 +34,7 @@ struct ViewFiles {
   std::string photo;
   // Empty: there is none.
   std::string mask;
+  std::string prior;
 };
 
 // By the name of the view.

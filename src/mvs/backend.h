@@ -33,6 +33,10 @@ class Backend {
   // sweep/texture_weights.h.
   virtual void SetTextureness(Map<float> textureness) = 0;
 
+  // Gives sweeps a further hypothesis of every pixel, within the problem's
+  // range of depths, from now on. Only if the problem has a prior.
+  virtual void SetDepthPrior(Map<PackedDepthNormal> prior) = 0;
+
   // Gives sweeps further hypotheses, until the next call.
   virtual void SetPlanes(PlaneSet fine, PlaneSet coarse) = 0;
 

@@ -9,6 +9,7 @@
 #include "src/mvs/backends.h"
 #include "src/mvs/camera_table.h"
 #include "src/mvs/cpu/memory_plan.h"
+#include "src/mvs/prior_planes.h"
 #include "src/mvs/schedule.h"
 #include "src/mvs/sweep/hypotheses.h"
 #include "src/mvs/tapa/stages.h"
@@ -169,6 +170,10 @@ std::optional<Estimate> EstimateDepth(const Options& options, Problem problem,
     return std::nullopt;
   }
 
+  if (!problem.prior.empty()) {
+    backend->SetDepthPrior(PriorPlanes(problem));
+    problem.prior = {};
+  }
   std::unique_ptr<TapaStages> tapa;
   if (options.tapa.enabled) {
     tapa = std::make_unique<TapaStages>(options, problem, control);
@@ -200,7 +205,11 @@ std::optional<Estimate> EstimateDepth(const Options& options, Problem problem,
 
 size_t EstimateDepthMemory(const Options& options, const Problem& problem) {
   const size_t pixels = problem.reference.image->size();
-  return CpuBackendMemory(options, problem) + problem.mask.size() +
+  const size_t prior = problem.prior.empty()
+                           ? 0
+                           : problem.prior.size() * sizeof(float) +
+                                 pixels * sizeof(PackedDepthNormal);
+  return CpuBackendMemory(options, problem) + problem.mask.size() + prior +
          (options.tapa.enabled ? pixels * kTapaBytesPerPixel : 0);
 }
 

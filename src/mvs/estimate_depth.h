@@ -21,8 +21,9 @@ std::optional<Estimate> EstimateDepth(const Options& options, Problem problem,
 
 // Bytes of memory that EstimateDepth needs besides the images and depth maps of
 // the views: for w x h pixels what the CPU backend takes (cpu/memory_plan.h),
-// 37 w h for TAPA and w h for a mask. For n source views the views themselves
-// need w h (1 + n) and, in the geometric pass, 4 w h n.
+// 37 w h for TAPA, w h for a mask, and 8 w h and the prior itself for a prior.
+// For n source views the views themselves need w h (1 + n) and, in the
+// geometric pass, 4 w h n.
 size_t EstimateDepthMemory(const Options& options, const Problem& problem);
 
 }  // namespace tapa

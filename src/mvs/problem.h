@@ -29,6 +29,10 @@ struct Problem {
   // at random. A photometric pass without them starts at random altogether.
   Map<float> depth;
   Map<Vec3> normal;
+  // Depth of the reference view from elsewhere, in scene units, of any size;
+  // what is no depth (IsDepth) is not known. It is tried as a hypothesis of
+  // every pixel. Empty: there is none.
+  Map<float> prior;
   // Pixels of the reference image to leave alone, where it is not 0: they get
   // no estimate, cost no time and lend nothing to others. Of the image's size,
   // or empty: there are none. What source views show is not masked.

@@ -51,6 +51,7 @@ const Category kHypotheses[] = {
     {"random", {0, 94, 213}},
     {"random normal", {167, 121, 204}},
     {"random depth", {66, 228, 240}},
+    {"prior", {178, 114, 0}},
     {"fine plane", {233, 180, 86}},
     {"coarse plane", {115, 158, 0}},
 };

@@ -18,9 +18,9 @@ ViewInputs InputsWith(const std::string& own_mask,
   views[1].name = "b.png";
   views[2].name = "c.png";
   return DescribeInputs(views, 0, {1, 2},
-                        {{0, {"photo0", own_mask}},
-                         {1, {"photo1", source_mask}},
-                         {2, {"photo2", ""}}});
+                        {{0, {"photo0", own_mask, ""}},
+                         {1, {"photo1", source_mask, ""}},
+                         {2, {"photo2", "", ""}}});
 }
 
 TEST(ViewsRecord, ReadsWhatItWrote) {
@@ -57,6 +57,33 @@ TEST(ViewsRecord, WithoutMasksIsAsBeforeThereWereAny) {
     last = next;
   }
   EXPECT_EQ(last, line);
+}
+
+TEST(ViewsRecord, NoticesOtherPriors) {
+  const auto inputs_with = [](const std::string& mask, const std::string& own,
+                              const std::string& source) {
+    std::vector<SceneView> views(2);
+    views[1].name = "b.png";
+    return DescribeInputs(
+        views, 0, {1},
+        {{0, {"photo0", mask, own}}, {1, {"photo1", "", source}}});
+  };
+  const TestFolder folder;
+  const std::string path = folder.Path("views.txt");
+  for (const std::string mask : {"", "mask0"}) {
+    const ViewInputs inputs = inputs_with(mask, "prior0", "prior1");
+    EXPECT_EQ(DescribeDifference(inputs_with(mask, "", "prior1"), inputs),
+              "other priors");
+    EXPECT_EQ(DescribeDifference(inputs_with(mask, "prior0", "prior"), inputs),
+              "other priors");
+    EXPECT_EQ(DescribeDifference(inputs, inputs_with(mask, "", "")),
+              "other priors");
+    WriteViewsRecord(path, {{"a.png", inputs}});
+    const ViewInputs read = ReadViewsRecord(path).at("a.png");
+    EXPECT_EQ(DescribeDifference(read, inputs), "");
+    EXPECT_EQ(read.masks, inputs.masks);
+    EXPECT_EQ(read.priors, inputs.priors);
+  }
 }
 
 TEST(ViewsRecord, NoticesOtherMasks) {

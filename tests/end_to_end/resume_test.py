@@ -77,6 +77,28 @@ class Resume(StereoTestCase):
                 self.assertEqual(
                     os.listdir(self.path("stereo", "depth_maps")), [])
 
+    def test_two_at_once(self):
+        """The second one leaves the first alone, which ends as if it had been."""
+        options = {"num_iterations": 30, "num_levels": 2}
+        expected = self.undisturbed(**options)
+        first = self.start(**options)
+        self.wait_for_output(first, "Configuration has")
+        for _ in range(3):
+            self.assert_one_error(tiny.run_stereo(self.folder, **options),
+                                  "Another run of stereo computes in " + self.folder)
+        self.assertIsNone(first.poll(), "it ended before the second one began")
+        first.communicate()
+        self.assertEqual(first.returncode, 0)
+        self.assert_same_files(expected, tiny.snapshot(self.folder))
+        # Killed, it keeps nobody out.
+        tiny.make_workspace(self.path("other"))
+        other = subprocess.Popen(tiny.stereo_command(self.path("other"), **options),
+                                 stdout=subprocess.PIPE, text=True)
+        self.wait_for_output(other, "Configuration has")
+        other.kill()
+        other.communicate()
+        self.assert_success(tiny.run_stereo(self.path("other"), **options))
+
     def test_finished_run_is_not_repeated(self):
         self.assert_success(tiny.run_stereo(self.folder))
         times = [os.stat(tiny.map_path(self.folder, name)).st_mtime_ns

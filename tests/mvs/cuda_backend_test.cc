@@ -46,8 +46,10 @@ TEST(CudaBackend, TakesTheMemoryItSays) {
   const SyntheticPlane scene = SmallScene();
   for (const bool geometric : {false, true}) {
     for (const bool tapa : {false, true}) {
-      const Problem problem =
-          geometric ? scene.GeometricProblem() : scene.problem();
+      Problem problem = geometric ? scene.GeometricProblem() : scene.problem();
+      if (tapa) {
+        problem.prior = scene.depth();
+      }
       const Options options = GpuOptions(geometric, tapa);
       emulated_cuda::Reset({});
       ASSERT_TRUE(EstimateDepth(options, problem));

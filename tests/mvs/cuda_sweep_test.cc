@@ -8,9 +8,9 @@
 #include <random>
 
 #include "src/mvs/cuda/layout.h"
-#include "src/mvs/cuda/packed_depth_normal.h"
 #include "src/mvs/cuda/sweep_task.h"
 #include "src/mvs/schedule.h"
+#include "src/mvs/sweep/packed_depth_normal.h"
 #include "src/mvs/testing.h"
 #include "tests/mvs/emulated_cuda/emulator.h"
 #include "tests/mvs/sweep_start.h"
@@ -64,6 +64,7 @@ struct CudaScene {
     std::mt19937 random(6);
     if (c.guided) {
       guide = MakeGuide(scene, &random);
+      problem.prior = scene.depth();
       options.tapa.weight_range = guide.weight_range;
       for (size_t i = 0; i < guide.textureness.size(); ++i) {
         float& t = guide.textureness.data()[i];
@@ -97,7 +98,7 @@ struct CudaScene {
   }
 
   const SyntheticPlane scene;
-  const Problem problem;
+  Problem problem;
   const Start start;
   Options options;
   SweepParams params;
@@ -118,6 +119,9 @@ Outcome Run(const CudaScene& s, std::unique_ptr<BackendForTesting> backend) {
   if (s.options.tapa.enabled) {
     backend->SetTextureness(s.guide.textureness);
     backend->SetPlanes(s.guide.fine, s.guide.coarse);
+    if (!s.problem.prior.empty()) {
+      backend->SetDepthPrior(s.guide.depth_prior);
+    }
   }
   EXPECT_TRUE(backend->SetEstimate(s.start.depth, s.start.normal, KeepGoing));
   outcome.first_costs = backend->Costs();

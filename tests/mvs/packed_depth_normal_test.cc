@@ -1,6 +1,6 @@
 // How the CUDA backend packs what it keeps in a device's memory.
 
-#include "src/mvs/cuda/packed_depth_normal.h"
+#include "src/mvs/sweep/packed_depth_normal.h"
 
 #include <gtest/gtest.h>
 

@@ -432,9 +432,11 @@ void Sweep(const Options& options, const Problem& problem,
           {random_depth, random_normal},
           {current.depth, random_normal},
           {random_depth, current.normal},
+          guide.depth_prior.empty() ? DepthNormal()
+                                    : Unpack(guide.depth_prior.At(row, col)),
           PlaneOfPixel(guide.fine, guide, problem, row, col),
           PlaneOfPixel(guide.coarse, guide, problem, row, col)};
-      constexpr size_t kFirstPlanar = 5;
+      constexpr size_t kFirstPlanar = 6;
       double plus = 1;
       double minus = 1;
       if (!guide.textureness.empty()) {

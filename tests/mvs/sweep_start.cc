@@ -54,6 +54,16 @@ GuideMaps MakeGuide(const SyntheticPlane& scene, std::mt19937* random) {
                                PlaneThrough(1.4f * depth, {0, 0, -1}),
                                {{1, 0, 0}, 1e-6f}},
                               image.width(), image.height(), random);
+  guide.depth_prior = Map<PackedDepthNormal>(image.width(), image.height());
+  for (size_t i = 0; i < guide.depth_prior.size(); ++i) {
+    const float factors[] = {1, 1.001f, 0.97f, 1.3f};
+    const size_t draw = (*random)() % 5;
+    // Clearly another plane than that of a neighbour, which may be propagated.
+    const float own = 1 + 1e-5f * ((*random)() % 1000);
+    guide.depth_prior.data()[i] =
+        draw < 4 ? Pack({own * factors[draw] * scene.depth().data()[i], normal})
+                 : PackNothing();
+  }
   return guide;
 }
 

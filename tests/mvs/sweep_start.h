@@ -19,7 +19,7 @@ PlaneSet DrawAtRandom(const std::vector<Plane>& planes, int width, int height,
                       std::mt19937* random);
 
 // Planes near the truth and far from it, out of the range of depths and turned
-// away.
+// away, and a prior near the truth and off it.
 GuideMaps MakeGuide(const SyntheticPlane& scene, std::mt19937* random);
 
 struct Start {

@@ -243,7 +243,7 @@ TEST_P(SweepTest, MakesTheChoicesOfTheReference) {
   EXPECT_GE(num_same, kShareSame * depth.size());
   EXPECT_GE(num_same_choices, kShareSame * depth.size());
   EXPECT_GT(num_changed, 0.25 * depth.size());
-  for (const Hypothesis planar : {kFinePlane, kCoarsePlane}) {
+  for (const Hypothesis planar : {kDepthPrior, kFinePlane, kCoarsePlane}) {
     EXPECT_EQ(num_chosen[planar] > 0.03 * depth.size(), GetParam().guided)
         << num_chosen[planar];
   }
@@ -386,6 +386,8 @@ TEST(Sweep, WithoutPlanesAndWeightsIsThePlainAlgorithm) {
     for (PlaneSet* set : {&idle.fine, &idle.coarse}) {
       set->index = Map<uint16_t>(data.width, data.height, PlaneSet::kNone);
     }
+    idle.depth_prior =
+        Map<PackedDepthNormal>(data.width, data.height, PackNothing());
     EXPECT_TRUE(SameState(sweep_twice(idle), plain));
     // No plane is possible: out of range, behind the camera, turned away or
     // seen edge-on.
@@ -461,6 +463,7 @@ void ExpectPlanesToWinOnAFlatPatch(bool geometric) {
                    << "textureness " << min_textureness << ", sweep " << index);
       std::mt19937 random(index);
       GuideMaps guide = MakeGuide(scene, &random);
+      guide.depth_prior = {};
       const Vec3 n = scene.normal();
       guide.fine = DrawAtRandom({PlaneThrough(3, n), PlaneThrough(5, n)}, 48,
                                 40, &random);

@@ -65,6 +65,10 @@ class CpuBackend : public BackendForTesting {
     guide_maps_.textureness = std::move(textureness);
   }
 
+  void SetDepthPrior(Map<PackedDepthNormal> prior) override {
+    guide_maps_.depth_prior = std::move(prior);
+  }
+
   void SetPlanes(PlaneSet fine, PlaneSet coarse) override {
     guide_maps_.fine = std::move(fine);
     guide_maps_.coarse = std::move(coarse);

@@ -72,6 +72,8 @@ struct GuideMaps {
   float depth_max = 0;
   PlaneSet fine;
   PlaneSet coarse;
+  // Empty: none.
+  Map<PackedDepthNormal> depth_prior;
 
   // Points into these maps.
   SweepGuide<float> Guide() const {
@@ -80,7 +82,8 @@ struct GuideMaps {
             depth_min,
             depth_max,
             fine.Table(),
-            coarse.Table()};
+            coarse.Table(),
+            depth_prior.empty() ? nullptr : depth_prior.data()};
   }
 };
 

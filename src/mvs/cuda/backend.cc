@@ -84,6 +84,9 @@ class CudaBackend : public BackendForTesting {
       fine_ = DevicePlanes(plan_.pixels);
       coarse_ = DevicePlanes(plan_.pixels);
     }
+    if (plan_.prior) {
+      prior_ = DeviceArray<PackedDepthNormal>(plan_.pixels);
+    }
     share_.Settle();
     UploadCameras(problem);
     if (profile_ != nullptr) {
@@ -164,6 +167,11 @@ class CudaBackend : public BackendForTesting {
                    codes.begin(), [](float t) { return EncodeTextureness(t); });
     textureness_.Upload(codes.data(), codes.size());
     task_.guide.textureness = codes.empty() ? nullptr : textureness_.data();
+  }
+
+  void SetDepthPrior(Map<PackedDepthNormal> prior) override {
+    prior_.Upload(prior.data(), prior.size());
+    task_.guide.depth_prior = prior_.data();
   }
 
   void SetPlanes(PlaneSet fine, PlaneSet coarse) override {
@@ -329,6 +337,7 @@ class CudaBackend : public BackendForTesting {
   DeviceArray<uint16_t> textureness_;
   DevicePlanes fine_;
   DevicePlanes coarse_;
+  DeviceArray<PackedDepthNormal> prior_;
   SweepTask task_;
   KernelLaunch launch_;
   // Behind all that their work uses.

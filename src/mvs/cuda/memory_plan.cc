@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "src/mvs/cuda/packed_depth_normal.h"
+#include "src/mvs/sweep/packed_depth_normal.h"
 
 namespace tapa {
 namespace {
@@ -19,6 +19,7 @@ MemoryPlan::MemoryPlan(const Options& options, const Problem& problem)
       num_views(static_cast<int>(problem.sources.size())),
       geometric(options.geom_consistency),
       tapa(options.tapa.enabled),
+      prior(!problem.prior.empty()),
       pixels(problem.reference.image->size()) {
   for (const View& view : problem.sources) {
     max_source_width = std::max(max_source_width, view.image->width());
@@ -52,6 +53,9 @@ size_t MemoryPlan::Bytes() const {
   }
   if (tapa) {
     bytes += pixels * 3 * sizeof(uint16_t);
+  }
+  if (prior) {
+    bytes += pixels * sizeof(PackedDepthNormal);
   }
   return bytes;
 }

@@ -24,6 +24,7 @@ struct MemoryPlan {
   int max_source_height = 0;
   bool geometric = false;
   bool tapa = false;
+  bool prior = false;
   // Pixels of a line whose backward messages are kept. With the one per piece
   // that is kept too, they are fewest at the square root of a line's length.
   int piece_length = 0;
@@ -46,10 +47,11 @@ struct MemoryPlan {
 //   w h n                 source images
 //   4 w h n               their depth maps, in the geometric pass
 //   6 w h                 with TAPA: textureness and planes
+//   8 w h                 with a prior
 //   about 8 n max(w, h)^1.5   messages on the way
 //
 // which makes 199 bytes per pixel at 20 views of 3200 x 2130, in the geometric
-// pass with TAPA. What CUDA itself takes comes on top.
+// pass with TAPA and without a prior. What CUDA itself takes comes on top.
 size_t EstimateDepthDeviceMemory(const Options& options,
                                  const Problem& problem);
 

@@ -5,9 +5,9 @@
 #include <cstdint>
 
 #include "src/mvs/cuda/layout.h"
-#include "src/mvs/cuda/packed_depth_normal.h"
 #include "src/mvs/sweep/guide.h"
 #include "src/mvs/sweep/line.h"
+#include "src/mvs/sweep/packed_depth_normal.h"
 #include "src/mvs/sweep/sweep_params.h"
 
 namespace tapa {

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "src/mvs/sweep/packed_depth_normal.h"
 #include "src/mvs/sweep/plane.h"
 #include "src/mvs/sweep/texture_weights.h"
 
@@ -13,6 +14,7 @@ namespace tapa {
 struct PixelGuide {
   TextureWeights weights;
   // Further hypotheses; depth 0: none.
+  DepthNormal depth_prior;
   DepthNormal fine;
   DepthNormal coarse;
 };
@@ -38,12 +40,17 @@ struct SweepGuide {
   float depth_max = 0;
   PlaneTable fine;
   PlaneTable coarse;
+  // Depth from elsewhere; nullptr: none of any pixel.
+  const PackedDepthNormal* depth_prior = nullptr;
 
   TAPA_INLINE PixelGuide At(size_t pixel, const Vec3& ray) const {
     PixelGuide guide;
     if (textureness != nullptr) {
       guide.weights = TextureWeights::FromTextureness(
           DecodeTextureness(textureness[pixel]), weight_range);
+    }
+    if (depth_prior != nullptr) {
+      guide.depth_prior = Unpack(depth_prior[pixel]);
     }
     guide.fine = HypothesisOf(fine, pixel, ray);
     guide.coarse = HypothesisOf(coarse, pixel, ray);

@@ -19,22 +19,25 @@ enum Hypothesis {
   kRandom,
   kRandomNormal,
   kRandomDepth,
-  // From outside the sweep: planes of a fine and a coarse superpixel.
+  // From outside the sweep: depth from elsewhere, and planes of a fine and a
+  // coarse superpixel.
+  kDepthPrior,
   kFinePlane,
   kCoarsePlane,
   kNumHypotheses
 };
 
 // Distinct depths among the hypotheses: current, propagated, random, and those
-// of the planes.
-constexpr int kNumDepths = 5;
+// from outside.
+constexpr int kNumDepths = 6;
 
 // Which of them a hypothesis has.
 TAPA_INLINE int DepthIndex(int hypothesis) {
   return hypothesis == kPropagated                             ? 1
          : hypothesis == kRandom || hypothesis == kRandomDepth ? 2
-         : hypothesis == kFinePlane                            ? 3
-         : hypothesis == kCoarsePlane                          ? 4
+         : hypothesis == kDepthPrior                           ? 3
+         : hypothesis == kFinePlane                            ? 4
+         : hypothesis == kCoarsePlane                          ? 5
                                                                : 0;
 }
 
@@ -155,6 +158,7 @@ TAPA_INLINE void MakeHypotheses(const PixelContext& p,
       p.current.depth, TriesRandom(p, kRandomNormal) ? random_normal : Vec3()};
   hypotheses[kRandomDepth] = {random_depth,
                               depth_alone ? p.current.normal : Vec3()};
+  hypotheses[kDepthPrior] = p.guide.depth_prior;
   hypotheses[kFinePlane] = p.guide.fine;
   hypotheses[kCoarsePlane] = p.guide.coarse;
 }

@@ -34,8 +34,8 @@ TAPA_INLINE void ComputeGeometricCosts(const PixelContext& p,
 template <class Lanes, class Sources>
 TAPA_INLINE void ComputeGeometricCostsOfAll(const PixelContext& p,
                                             const Sources& sources) {
-  constexpr Hypothesis kDepths[kNumDepths] = {kCurrent, kPropagated, kRandom,
-                                              kFinePlane, kCoarsePlane};
+  constexpr Hypothesis kDepths[kNumDepths] = {
+      kCurrent, kPropagated, kRandom, kDepthPrior, kFinePlane, kCoarsePlane};
   for (int i = 0; i < kNumDepths; ++i) {
     const float depth = p.scratch.hypothesis[kDepths[i]].depth;
     if (depth > 0.0f) {

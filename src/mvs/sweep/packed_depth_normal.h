@@ -1,5 +1,5 @@
-#ifndef TAPA_SRC_MVS_CUDA_PACKED_DEPTH_NORMAL_H_
-#define TAPA_SRC_MVS_CUDA_PACKED_DEPTH_NORMAL_H_
+#ifndef TAPA_SRC_MVS_SWEEP_PACKED_DEPTH_NORMAL_H_
+#define TAPA_SRC_MVS_SWEEP_PACKED_DEPTH_NORMAL_H_
 
 #include <cmath>
 #include <cstdint>
@@ -8,16 +8,16 @@
 
 namespace tapa {
 
-// The estimate of a pixel in 8 bytes: its depth as it is, its unit normal as a
-// point of the octahedron |x| + |y| + |z| = 1 that is unfolded into a square
-// (Cigolle et al., "A Survey of Efficient Representations for Independent Unit
-// Vectors", JCGT 2014), with 16 bits for either coordinate. Normals come back
-// to within 7e-5 radians, a change of depth by 3e-4 pixels at the border of an
-// 11x11 window.
+// An estimate or a hypothesis of a pixel in 8 bytes: its depth as it is, its
+// unit normal as a point of the octahedron |x| + |y| + |z| = 1 that is unfolded
+// into a square (Cigolle et al., "A Survey of Efficient Representations for
+// Independent Unit Vectors", JCGT 2014), with 16 bits for either coordinate.
+// Normals come back to within 7e-5 radians, a change of depth by 3e-4 pixels at
+// the border of an 11x11 window.
 struct alignas(8) PackedDepthNormal {
   float depth;
   // No valid normal has the code kNoNormal: it stands for 0, where there is no
-  // estimate.
+  // depth.
   uint32_t normal;
 };
 
@@ -55,7 +55,7 @@ TAPA_INLINE Vec3 UnpackNormal(uint32_t code) {
   return (1.0f / sqrtf(Dot(n, n))) * n;
 }
 
-// Of a pixel without an estimate.
+// Of a pixel that has none.
 TAPA_INLINE PackedDepthNormal PackNothing() { return {0.0f, kNoNormal}; }
 
 TAPA_INLINE PackedDepthNormal Pack(const DepthNormal& estimate) {
@@ -68,4 +68,4 @@ TAPA_INLINE DepthNormal Unpack(const PackedDepthNormal& packed) {
 
 }  // namespace tapa
 
-#endif  // TAPA_SRC_MVS_CUDA_PACKED_DEPTH_NORMAL_H_
+#endif  // TAPA_SRC_MVS_SWEEP_PACKED_DEPTH_NORMAL_H_

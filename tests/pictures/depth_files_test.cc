@@ -1,0 +1,195 @@
+#include "src/pictures/depth_files.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <string>
+#include <vector>
+
+#include "src/base/failure.h"
+
+namespace tapa {
+namespace {
+
+class DepthFiles : public testing::Test {
+ protected:
+  DepthFiles() : folder_(testing::TempDir() + "/depth_files_test") {
+    setenv("OPENCV_IO_ENABLE_OPENEXR", "1", 1);
+    std::filesystem::create_directories(folder_);
+  }
+  ~DepthFiles() override { std::filesystem::remove_all(folder_); }
+
+  std::string Path(const std::string& name) const {
+    return folder_ + "/" + name;
+  }
+
+  std::string Write(const std::string& name, const std::string& bytes) const {
+    std::ofstream(Path(name), std::ios::binary) << bytes;
+    return Path(name);
+  }
+
+  std::string Read(const std::string& name) const {
+    std::ifstream file(Path(name), std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+
+  // As text of the message; empty: there is none.
+  std::string ErrorOf(const std::string& path) const {
+    try {
+      ReadDepthFile(path);
+    } catch (const Failure& error) {
+      EXPECT_NE(std::string(error.what()).find(path), std::string::npos);
+      return error.what();
+    }
+    return "";
+  }
+
+  const std::string folder_;
+};
+
+// 3 x 2 values.
+const std::vector<float> kValues = {1.5f, 0, 3, 4, 65504, 0.25f};
+
+cv::Mat Floats() {
+  return cv::Mat(2, 3, CV_32F, const_cast<float*>(kValues.data())).clone();
+}
+
+void ExpectValues(const Map<float>& map) {
+  ASSERT_EQ(map.width(), 3);
+  ASSERT_EQ(map.height(), 2);
+  for (int i = 0; i < 6; ++i) {
+    EXPECT_EQ(map.data()[i], kValues[i]) << i;
+  }
+}
+
+template <typename T>
+std::string BytesOf(const std::vector<T>& values) {
+  return {reinterpret_cast<const char*>(values.data()),
+          values.size() * sizeof(T)};
+}
+
+std::string Npy(const std::string& type, const std::string& shape,
+                const std::string& values, bool fortran = false,
+                int version = 1) {
+  const std::string header = "{'descr': '" + type + "', 'fortran_order': " +
+                             (fortran ? "True" : "False") +
+                             ", 'shape': " + shape + ", }\n";
+  std::string size(version == 1 ? 2 : 4, '\0');
+  size[0] = static_cast<char>(header.size());
+  return std::string("\x93NUMPY") + static_cast<char>(version) + '\0' + size +
+         header + values;
+}
+
+TEST_F(DepthFiles, ReadsExr) {
+  cv::imwrite(Path("a.exr"), Floats());
+  ExpectValues(ReadDepthFile(Path("a.exr")));
+  // Of a channel called Z.
+  std::string bytes = Read("a.exr");
+  const size_t list = bytes.find(std::string("chlist\0", 7));
+  ASSERT_NE(list, std::string::npos);
+  ASSERT_EQ(bytes[list + 11], 'Y');
+  bytes[list + 11] = 'Z';
+  ExpectValues(ReadDepthFile(Write("z.exr", bytes)));
+  // Of 16 bits.
+  cv::imwrite(Path("half.exr"), Floats(),
+              {cv::IMWRITE_EXR_TYPE, cv::IMWRITE_EXR_TYPE_HALF});
+  ExpectValues(ReadDepthFile(Path("half.exr")));
+}
+
+TEST_F(DepthFiles, ReadsPfm) {
+  cv::imwrite(Path("a.pfm"), Floats());
+  ExpectValues(ReadDepthFile(Path("a.pfm")));
+  // Big-endian, and from the lowest row up.
+  std::string bytes = "Pf\n3 2\n1.0\n";
+  for (const int i : {3, 4, 5, 0, 1, 2}) {
+    const std::string value = BytesOf(std::vector<float>{kValues[i]});
+    bytes.append(value.rbegin(), value.rend());
+  }
+  ExpectValues(ReadDepthFile(Write("big.pfm", bytes)));
+}
+
+TEST_F(DepthFiles, ReadsPngOf16Bits) {
+  const cv::Mat values = (cv::Mat_<uint16_t>(2, 3) << 1, 0, 300, 4, 65535, 7);
+  cv::imwrite(Path("a.png"), values);
+  const Map<float> map = ReadDepthFile(Path("a.png"));
+  ASSERT_EQ(map.width(), 3);
+  EXPECT_EQ(map.At(0, 2), 300);
+  EXPECT_EQ(map.At(1, 1), 65535);
+}
+
+TEST_F(DepthFiles, ReadsNpy) {
+  ExpectValues(
+      ReadDepthFile(Write("a.npy", Npy("<f4", "(2, 3)", BytesOf(kValues)))));
+  ExpectValues(ReadDepthFile(
+      Write("b.npy", Npy("<f4", "(2, 3)", BytesOf(kValues), false, 2))));
+  ExpectValues(ReadDepthFile(Write(
+      "c.npy",
+      Npy("<f8", "(2, 3)",
+          BytesOf(std::vector<double>(kValues.begin(), kValues.end()))))));
+  // Halves of 1.5, 0, 3, 4, 65504 and 0.25.
+  const std::vector<uint16_t> halves = {0x3E00, 0,      0x4200,
+                                        0x4400, 0x7BFF, 0x3400};
+  ExpectValues(
+      ReadDepthFile(Write("d.npy", Npy("<f2", "(2, 3)", BytesOf(halves)))));
+}
+
+TEST_F(DepthFiles, KeepsWhatIsNoDepth) {
+  const std::vector<float> values = {NAN, INFINITY, -1};
+  const Map<float> map =
+      ReadDepthFile(Write("a.npy", Npy("<f4", "(1, 3)", BytesOf(values))));
+  EXPECT_TRUE(std::isnan(map.At(0, 0)));
+  EXPECT_EQ(map.At(0, 1), INFINITY);
+  EXPECT_EQ(map.At(0, 2), -1);
+}
+
+TEST_F(DepthFiles, RefusesOtherNpy) {
+  const std::string values = BytesOf(kValues);
+  for (const std::string& bytes :
+       {Npy(">f4", "(2, 3)", values), Npy("<i4", "(2, 3)", values),
+        Npy("|O", "(2, 3)", values), Npy("<f4", "(6,)", values),
+        Npy("<f4", "(2, 3, 1)", values), Npy("<f4", "(2, 3)", values, true)}) {
+    EXPECT_NE(ErrorOf(Write("a.npy", bytes)).find("shape"), std::string::npos);
+  }
+  for (const std::string& bytes :
+       {Npy("<f4", "(2, 4)", values), Npy("<f4", "(0, 3)", ""),
+        Npy("<f4", "(2, 3)", values + "x"),
+        Npy("<f4", "(999999, 999999)", values)}) {
+    EXPECT_NE(ErrorOf(Write("a.npy", bytes)).find("bytes"), std::string::npos);
+  }
+}
+
+TEST_F(DepthFiles, RefusesDamagedFiles) {
+  cv::imwrite(Path("a.exr"), Floats());
+  cv::imwrite(Path("a.pfm"), Floats());
+  cv::imwrite(Path("a.png"), cv::Mat(20, 30, CV_16U, cv::Scalar(77)));
+  Write("a.npy", Npy("<f4", "(2, 3)", BytesOf(kValues)));
+  for (const std::string name : {"a.exr", "a.pfm", "a.png", "a.npy"}) {
+    const std::string bytes = Read(name);
+    for (const size_t size :
+         {size_t{0}, size_t{3}, size_t{9}, bytes.size() / 2}) {
+      EXPECT_NE(ErrorOf(Write(name, bytes.substr(0, size))), "")
+          << name << " " << size;
+    }
+    EXPECT_NE(ErrorOf(Write(name, "This is no depth map.\n")), "") << name;
+  }
+  EXPECT_NE(ErrorOf(Path("absent.exr")), "");
+}
+
+TEST_F(DepthFiles, RefusesColoursAndBytes) {
+  cv::imwrite(Path("a.png"), cv::Mat(2, 3, CV_8U, cv::Scalar(7)));
+  EXPECT_NE(ErrorOf(Path("a.png")).find("16 bits"), std::string::npos);
+  cv::imwrite(Path("b.png"), cv::Mat(2, 3, CV_16UC3, cv::Scalar(7, 8, 9)));
+  EXPECT_NE(ErrorOf(Path("b.png")).find("one channel"), std::string::npos);
+  cv::imwrite(Path("c.exr"), cv::Mat(2, 3, CV_32FC3, cv::Scalar(7, 8, 9)));
+  EXPECT_NE(ErrorOf(Path("c.exr")).find("one channel"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace tapa
