@@ -10,6 +10,7 @@
 #include <limits>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -20,9 +21,12 @@ namespace {
 
 class DepthFiles : public testing::Test {
  protected:
-  DepthFiles() : folder_(testing::TempDir() + "/depth_files_test") {
+  DepthFiles() : folder_(testing::TempDir() + "/depth_files_XXXXXX") {
     setenv("OPENCV_IO_ENABLE_OPENEXR", "1", 1);
-    std::filesystem::create_directories(folder_);
+    // Of its own: tests run side by side.
+    if (mkdtemp(folder_.data()) == nullptr) {
+      throw std::runtime_error("no folder for " + folder_);
+    }
   }
   ~DepthFiles() override { std::filesystem::remove_all(folder_); }
 
@@ -51,7 +55,7 @@ class DepthFiles : public testing::Test {
     return "";
   }
 
-  const std::string folder_;
+  std::string folder_;
 };
 
 // 3 x 2 values.
