@@ -59,7 +59,10 @@ class View:
 
 
 def rotation_of(quaternion):
-    """Rotation matrix, (3, 3), of (w, x, y, z), which need not have unit length."""
+    """Rotation matrix, (3, 3), of (w, x, y, z), which need not have unit length.
+
+    The Python package, which reads models with this, needs no more than numpy.
+    """
     length = np.linalg.norm(quaternion)
     if not length > 0:
         raise ValueError(f"{quaternion} is no rotation")

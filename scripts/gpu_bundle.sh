@@ -50,9 +50,9 @@ tests=0
 "$here/gpu_benchmark" "$@" || exit
 # Comes with CUDA's toolkit; slow.
 if [ "$tests" -eq 0 ] && command -v compute-sanitizer >/dev/null; then
-  for tool in memcheck racecheck synccheck; do
-    compute-sanitizer --tool "$tool" --error-exitcode 1 \
-      "$here/cuda_device_test" --gtest_filter='*ReportsSupport' || tests=$?
+  for tool in memcheck racecheck synccheck initcheck; do
+    compute-sanitizer --tool "$tool" --error-exitcode 1 "$here/cuda_device_test" \
+      --gtest_filter='*ReportsConsistentViews' || tests=$?
   done
 fi
 exit "$tests"
