@@ -567,6 +567,7 @@ TEST(Sweep, DrawsViewsInProportionToTheirProbability) {
   s.uniform = uniform.data();
   SweepParams params;
   params.num_samples = 15;
+  params.measure_all = true;
   const RefCamera camera = cameras.reference();
   double total[4] = {};
   for (int i = 0; i < 20000; ++i) {

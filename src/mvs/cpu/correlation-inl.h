@@ -29,47 +29,31 @@ using FloatTag = hn::CappedTag<float, 16>;
 using FloatVec = hn::Vec<FloatTag>;
 using IntTag = hn::RebindToSigned<FloatTag>;
 
-HWY_INLINE void CopyIntensities(const Window& window, const RefImage& image,
-                                int row, int col, uint8_t* HWY_RESTRICT to) {
-  const uint8_t* from = image.At(row - window.radius, col - window.radius);
-  const size_t stride = static_cast<size_t>(image.stride()) * window.step;
-  for (int y = 0; y < window.row_samples; ++y) {
-    if (window.step == 1) {
-      std::memcpy(to, from, window.row_samples);
-      to += window.row_samples;
-    } else {
-      const bool is_cut =
-          !window.has_corners && (y == 0 || y + 1 == window.row_samples);
-      for (int x = is_cut; x < window.row_samples - is_cut; ++x) {
-        *to++ = from[x * window.step];
-      }
-    }
-    from += stride;
-  }
-}
-
 // Prepares the patch around a pixel of the reference image.
 HWY_INLINE void LoadPatch(const Window& window, const RefImage& image, int row,
                           int col, Patch* patch) {
   const FloatTag d;
   const IntTag di;
-  const hn::Rebind<uint8_t, FloatTag> du8;
   const int lanes = static_cast<int>(hn::Lanes(d));
 
-  CopyIntensities(window, image, row, col, patch->intensity.get());
-  const auto center = hn::Set(di, *image.At(row, col));
+  const uint8_t* pixel = image.At(row, col);
+  const auto byte = hn::Set(di, 255);
+  const auto center = hn::Set(di, *pixel);
   FloatVec weight_sum = hn::Zero(d);
   FloatVec sum = hn::Zero(d);
   for (int i = 0; i < window.padded_samples; i += lanes) {
-    const auto intensity =
-        hn::PromoteTo(di, hn::Load(du8, patch->intensity.get() + i));
+    const auto intensity = hn::And(
+        byte, hn::GatherOffset(di, reinterpret_cast<const int32_t*>(pixel),
+                               hn::Load(di, image.offsets() + i)));
     const auto difference = hn::Abs(hn::Sub(intensity, center));
     const FloatVec weight =
         hn::Mul(hn::Load(d, window.spatial_weight.get() + i),
                 hn::GatherIndex(d, window.color_weight.get(), difference));
+    const FloatVec value = hn::ConvertTo(d, intensity);
     hn::Store(weight, d, patch->weight.get() + i);
+    hn::Store(value, d, patch->weighted_intensity.get() + i);
     weight_sum = hn::Add(weight_sum, weight);
-    sum = hn::MulAdd(weight, hn::ConvertTo(d, intensity), sum);
+    sum = hn::MulAdd(weight, value, sum);
   }
   const float inv_weight = 1.0f / hn::GetLane(hn::SumOfLanes(d, weight_sum));
   patch->mean = inv_weight * hn::GetLane(hn::SumOfLanes(d, sum));
@@ -78,8 +62,7 @@ HWY_INLINE void LoadPatch(const Window& window, const RefImage& image, int row,
   const FloatVec mean = hn::Set(d, patch->mean);
   FloatVec variance = hn::Zero(d);
   for (int i = 0; i < window.padded_samples; i += lanes) {
-    const FloatVec intensity = hn::ConvertTo(
-        d, hn::PromoteTo(di, hn::Load(du8, patch->intensity.get() + i)));
+    const FloatVec intensity = hn::Load(d, patch->weighted_intensity.get() + i);
     const FloatVec weight =
         hn::Mul(scale, hn::Load(d, patch->weight.get() + i));
     const FloatVec centered = hn::Sub(intensity, mean);

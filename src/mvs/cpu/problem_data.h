@@ -14,6 +14,13 @@
 
 namespace tapa {
 
+// A depth map of somebody else's, so that a look at a pixel is one at memory.
+struct DepthView {
+  const float* data;
+  int width;
+  int height;
+};
+
 // What the CPU reads in a sweep and never changes: images and cameras in the
 // layout that sweeps want.
 struct ProblemData {
@@ -32,7 +39,7 @@ struct ProblemData {
   CameraTable cameras;
   std::vector<SourceImage> sources;
   // Source depth maps; empty in the photometric pass.
-  std::vector<const Map<float>*> source_depths;
+  std::vector<DepthView> source_depths;
 };
 
 // What sweeps change, for every pixel in row-major order. Values of one pixel

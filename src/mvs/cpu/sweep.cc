@@ -36,12 +36,13 @@ class Sources {
 
   // Depth of the nearest pixel, 0 outside.
   float Depth(int m, const Projection& projection) const {
-    const Map<float>& depth = *data_.source_depths[m];
+    const DepthView& depth = data_.source_depths[m];
     const float col = projection.col + 0.5f;
     const float row = projection.row + 0.5f;
-    const bool inside = (col >= 0.0f) & (row >= 0.0f) & (col < depth.width()) &
-                        (row < depth.height());
-    return inside ? depth.At(static_cast<int>(row), static_cast<int>(col))
+    const bool inside = (col >= 0.0f) & (row >= 0.0f) & (col < depth.width) &
+                        (row < depth.height);
+    return inside ? depth.data[static_cast<size_t>(row) * depth.width +
+                               static_cast<size_t>(col)]
                   : 0.0f;
   }
 

@@ -35,18 +35,22 @@ Window::Window(const Options& options) : WindowShape(options) {
 }
 
 Patch::Patch(const Window& window)
-    : intensity(MakeAligned<uint8_t>(window.padded_samples)),
-      weight(MakeAligned<float>(window.padded_samples)),
+    : weight(MakeAligned<float>(window.padded_samples)),
       weighted_intensity(MakeAligned<float>(window.padded_samples)),
       mean(0),
       variance(0) {}
 
 RefImage::RefImage(const Map<uint8_t>& image, const Window& window)
     : border_(window.radius),
-      padded_(image.width() + 2 * border_, image.height() + 2 * border_, 0) {
+      padded_(image.width() + 2 * border_, image.height() + 2 * border_ + 1, 0),
+      offsets_(MakeAligned<int32_t>(window.padded_samples)) {
   for (int row = 0; row < image.height(); ++row) {
     std::memcpy(padded_.Row(row + border_) + border_, image.Row(row),
                 image.width());
+  }
+  for (int i = 0; i < window.num_samples; ++i) {
+    offsets_[i] = static_cast<int32_t>(window.dy[i]) * stride() +
+                  static_cast<int32_t>(window.dx[i]);
   }
 }
 

@@ -31,7 +31,6 @@ struct Window : WindowShape {
 struct Patch {
   explicit Patch(const Window& window);
 
-  hwy::AlignedFreeUniquePtr<uint8_t[]> intensity;
   // Weight of each sample, and weight times (intensity - mean).
   hwy::AlignedFreeUniquePtr<float[]> weight;
   hwy::AlignedFreeUniquePtr<float[]> weighted_intensity;
@@ -39,7 +38,8 @@ struct Patch {
   float variance;
 };
 
-// Reference image with a black border as wide as the window's radius.
+// Reference image with a black border as wide as the window's radius, and one
+// row more, for what vectors read past a pixel.
 class RefImage {
  public:
   RefImage(const Map<uint8_t>& image, const Window& window);
@@ -49,11 +49,16 @@ class RefImage {
     return padded_.data() + static_cast<size_t>(row + border_) * stride() +
            col + border_;
   }
-  int stride() const { return padded_.width(); }
+  // Where the window's samples lie, in pixels from the one in its centre; 0 in
+  // the padding.
+  const int32_t* offsets() const { return offsets_.get(); }
 
  private:
+  int stride() const { return padded_.width(); }
+
   int border_;
   Map<uint8_t> padded_;
+  hwy::AlignedFreeUniquePtr<int32_t[]> offsets_;
 };
 
 }  // namespace tapa

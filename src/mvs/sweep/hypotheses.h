@@ -140,8 +140,14 @@ TAPA_INLINE void MakeHypotheses(const PixelContext& p,
                                                     : p.params.perturbation;
   const float random_depth =
       PerturbDepth(p.random, perturbation, p.current.depth);
+  // A normal of zero faces nobody: such a hypothesis only lends its depth.
+  const bool both = TriesRandom(p, kRandom);
+  const bool depth_alone = TriesRandom(p, kRandomDepth);
+  const bool normal_alone = TriesRandom(p, kRandomNormal);
   const Vec3 random_normal =
-      PerturbNormal(p.random, perturbation, p.current.normal, p.ray);
+      both || normal_alone
+          ? PerturbNormal(p.random, perturbation, p.current.normal, p.ray)
+          : Vec3();
   hypotheses[kCurrent] = p.current;
   DepthNormal& propagated = hypotheses[kPropagated];
   propagated = {PropagateDepth(previous.estimate, previous.ray, p.ray),
@@ -149,13 +155,10 @@ TAPA_INLINE void MakeHypotheses(const PixelContext& p,
   if (!p.params.try_all && IsSame(propagated, p.current)) {
     propagated = DepthNormal();
   }
-  // A normal of zero faces nobody: such a hypothesis only lends its depth.
-  const bool both = TriesRandom(p, kRandom);
-  const bool depth_alone = TriesRandom(p, kRandomDepth);
   hypotheses[kRandom] = {both || depth_alone ? random_depth : 0.0f,
                          both ? random_normal : Vec3()};
-  hypotheses[kRandomNormal] = {
-      p.current.depth, TriesRandom(p, kRandomNormal) ? random_normal : Vec3()};
+  hypotheses[kRandomNormal] = {p.current.depth,
+                               normal_alone ? random_normal : Vec3()};
   hypotheses[kRandomDepth] = {random_depth,
                               depth_alone ? p.current.normal : Vec3()};
   hypotheses[kDepthPrior] = p.guide.depth_prior;

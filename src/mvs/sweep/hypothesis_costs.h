@@ -11,18 +11,24 @@
 
 namespace tapa {
 
+// Geometric costs of a depth in the first num_views of the order; what stands
+// for the others means nothing.
 template <class Lanes, class Sources>
 TAPA_INLINE void ComputeGeometricCosts(const PixelContext& p,
-                                       const Sources& sources, float depth,
-                                       float* costs) {
+                                       const Sources& sources, int num_views,
+                                       float depth, float* costs) {
   const PixelScratch& s = p.scratch;
   TAPA_INDEPENDENT_ITERATIONS
   for (int m = Lanes::First(); m < p.views.padded_count; m += Lanes::Step()) {
     s.projection[m] = ProjectToSource(p.views, m, p.row, p.col, depth);
   }
-  for (int m = Lanes::First(); m < p.views.count; m += Lanes::Step()) {
+  Lanes::Sync();
+  // Depth maps are large, so each read may have to wait for memory.
+  for (int k = Lanes::First(); k < num_views; k += Lanes::Step()) {
+    const int m = s.order[k];
     s.source_depth[m] = sources.Depth(m, s.projection[m]);
   }
+  Lanes::Sync();
   TAPA_INDEPENDENT_ITERATIONS
   for (int m = Lanes::First(); m < p.views.padded_count; m += Lanes::Step()) {
     costs[m] = ReprojectionError(p.views, m, p.row, p.col, s.projection[m],
@@ -33,13 +39,15 @@ TAPA_INLINE void ComputeGeometricCosts(const PixelContext& p,
 // Geometric costs of the depths of all hypotheses that have one.
 template <class Lanes, class Sources>
 TAPA_INLINE void ComputeGeometricCostsOfAll(const PixelContext& p,
-                                            const Sources& sources) {
+                                            const Sources& sources,
+                                            int num_distinct) {
   constexpr Hypothesis kDepths[kNumDepths] = {
       kCurrent, kPropagated, kRandom, kDepthPrior, kFinePlane, kCoarsePlane};
+  const int num_views = p.params.NeedsAllViews() ? p.views.count : num_distinct;
   for (int i = 0; i < kNumDepths; ++i) {
     const float depth = p.scratch.hypothesis[kDepths[i]].depth;
     if (depth > 0.0f) {
-      ComputeGeometricCosts<Lanes>(p, sources, depth,
+      ComputeGeometricCosts<Lanes>(p, sources, num_views, depth,
                                    p.scratch.geom_cost + i * p.scratch.stride);
     }
   }

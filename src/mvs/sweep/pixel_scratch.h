@@ -25,7 +25,8 @@ struct PixelScratch {
   float* cdf;
   // How often each one was drawn.
   float* num_drawn;
-  // All views, those drawn most often first, of equal ones the first.
+  // The views that were drawn, those drawn most often first, of equal ones the
+  // first; then, if SweepParams::NeedsAllViews, the others.
   int* order;
   // kDrawBlock random numbers.
   float* uniform;

@@ -46,6 +46,10 @@ struct SweepParams {
   float filter_geom_max_cost = 1;
   int filter_min_num_consistent = 2;
 
+  // Whether views that were not drawn for a pixel count there, too.
+  TAPA_INLINE bool NeedsAllViews() const {
+    return measure_all || check_consistency;
+  }
   TAPA_INLINE Direction SweepDirection() const { return DirectionOf(index); }
 };
 

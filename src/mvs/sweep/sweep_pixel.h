@@ -74,7 +74,7 @@ TAPA_INLINE Choice SweepPixel(const PixelContext& p,
   }
   Lanes::Sync();
   if (p.params.geometric) {
-    ComputeGeometricCostsOfAll<Lanes>(p, sources);
+    ComputeGeometricCostsOfAll<Lanes>(p, sources, num_distinct);
   }
   const int best = ChooseHypothesis<Lanes>(p, sources, num_distinct);
   const DepthNormal chosen = s.hypothesis[best];

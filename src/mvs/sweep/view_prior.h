@@ -69,22 +69,22 @@ struct ViewPrior {
   // Ratio of the areas that the window covers in the two views, at most 1; 0
   // where the window cannot be projected.
   TAPA_INLINE static float Resolution(const Warp& warp, float radius) {
-    float x[4];
-    float y[4];
-    for (int corner = 0; corner < 4; ++corner) {
-      const float dx = corner == 0 || corner == 1 ? -radius : radius;
-      const float dy = corner == 0 || corner == 3 ? -radius : radius;
-      const Vec3 p = warp.At(dx, dy);
-      const float inv_z = 1.0f / p.z;
-      x[corner] = p.x * inv_z;
-      y[corner] = p.y * inv_z;
-    }
-    // Half the cross product of the diagonals.
-    const float source_area = 0.5f * fabsf((x[2] - x[0]) * (y[3] - y[1]) -
-                                           (x[3] - x[1]) * (y[2] - y[0]));
+    // Half the cross product of the diagonals, with the corners as homogeneous
+    // coordinates: one division will do for all.
+    const Vec3 a = warp.At(-radius, -radius);
+    const Vec3 b = warp.At(-radius, radius);
+    const Vec3 c = warp.At(radius, radius);
+    const Vec3 d = warp.At(radius, -radius);
+    const float ac_x = c.x * a.z - a.x * c.z;
+    const float ac_y = c.y * a.z - a.y * c.z;
+    const float bd_x = d.x * b.z - b.x * d.z;
+    const float bd_y = d.y * b.z - b.y * d.z;
+    const float source_area = 0.5f * fabsf(ac_x * bd_y - bd_x * ac_y);
     const float size = 2.0f * radius + 1.0f;
-    const float ratio = source_area / (size * size);
-    const float prior = ratio < 1.0f ? ratio : 1.0f / ratio;
+    const float area = size * size * fabsf(a.z * c.z * b.z * d.z);
+    const bool is_smaller = source_area < area;
+    const float prior =
+        (is_smaller ? source_area : area) / (is_smaller ? area : source_area);
     return prior > 0.0f ? prior : 0.0f;
   }
 };
