@@ -33,6 +33,7 @@ for _name, _label, _options in (
         ("no-hysteresis", "no hysteresis", _stereo(hysteresis=0)),
         ("all", "all hypotheses", _stereo(try_all=1)),
         ("measure-all", "all views measured", _stereo(measure_all=1)),
+        ("4-views", "4 views drawn", _stereo(num_samples=4)),
         ("8-views", "8 views drawn", _stereo(num_samples=8)),
         ("full", "full windows", _stereo(window_step=1)),
         ("sigma", "sigma_color 0.2", _stereo(sigma_color=0.2)),

@@ -146,7 +146,7 @@ void VisitTapaOptions(Options* options, const Visitor& visit) {
 struct SearchOptions {
   bool try_all = false;
   bool measure_all = false;
-  double hysteresis = 0.1;
+  double hysteresis = 0.12;
 };
 
 // The table of these options, as VisitTapaOptions.
@@ -192,7 +192,7 @@ struct Options {
   double sigma_color = 0.1;
 
   // Number of source views drawn with replacement per pixel and sweep.
-  int num_samples = 4;
+  int num_samples = 3;
   // Spread of the likelihood of a view's cost (1 - NCC).
   double ncc_sigma = 0.6;
   // Triangulation angle below which a view's prior falls off, in degrees.

@@ -361,9 +361,9 @@ class Record(tiny.TestCase):
         defaults = {name: None for name in tiny.FAST}
         colmap = ["5", "1", "15", "1"]
         for options, photometric, geometric in (
-                ({}, ["4", "1", "4", "2"], ["2", "0.125", "4", "2"]),
-                ({"num_levels": 2}, ["1", "0.0078125", "4", "2"],
-                 ["2", "0.0078125", "4", "2"]),
+                ({}, ["4", "1", "3", "2"], ["2", "0.125", "3", "2"]),
+                ({"num_levels": 2}, ["1", "0.0078125", "3", "2"],
+                 ["2", "0.0078125", "3", "2"]),
                 ({"colmap_defaults": 1, "num_levels": 3}, colmap, colmap)):
             folder = self.path("options%d" % len(options))
             tiny.make_workspace(folder, num_views=2)

@@ -210,9 +210,10 @@ void ExpectAgrees(const CudaCase& c, bool exact, const Outcome& actual,
     ExpectSameMasks(actual.estimate, expected.estimate);
     return;
   }
-  // A draw or a tie that falls to the other side spreads to the next pixels of
-  // the line; with a single view ties are frequent.
-  const double share = c.num_sources == 1 ? 0.99 : 0.998;
+  // A draw or a tie that falls to the other side, which is a third of all draws
+  // of a pixel, spreads to the next pixels of the line; with a single view ties
+  // are frequent.
+  const double share = c.num_sources == 1 ? 0.99 : 0.994;
   EXPECT_GE(ShareOfSameChoices(actual.estimate, expected.estimate),
             exact ? share : 0.95);
   EXPECT_GE(ShareWithin(actual.costs, expected.costs, kCostTolerance),

@@ -21,7 +21,7 @@ struct SweepParams {
   float lost_perturbation = 1;
   // Weight of the selection probability of the sweep before, 0 to 1.
   float prev_prob_weight = 0;
-  int num_samples = 4;
+  int num_samples = 3;
   // As in SearchOptions.
   bool try_all = false;
   bool measure_all = false;
