@@ -4,12 +4,14 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
 #include <map>
 #include <sstream>
 #include <system_error>
 
 #include "mvs/fusion.h"
 #include "src/base/atomic_file.h"
+#include "src/base/peak_memory.h"
 #include "src/fusion/packed_normal.h"
 #include "util/endian.h"
 
@@ -197,6 +199,7 @@ void WriteFusedPoints(const std::string& path,
     WriteFusedPoints(path, fusion.GetFusedPoints(),
                      fusion.GetFusedPointsVisibility(), fusion.GetOrigin());
   }
+  std::cout << DescribePeakMemory() << std::endl;
 }
 
 std::vector<colmap::PlyPoint> PlyPoints(const FusedCloud& cloud) {

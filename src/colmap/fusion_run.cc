@@ -135,7 +135,8 @@ int FuseWorkspace(const colmap::mvs::StereoFusionOptions& options,
       ReportNoPoints(options);
       return EXIT_FAILURE;
     }
-    std::cout << "Number of fused points: " << fused->NumPoints() << std::endl;
+    std::cout << "Number of fused points: " << fused->NumPoints() << std::endl
+              << source.DescribeCacheUse() << std::endl;
     *cloud = fused;
     *origin = source.Origin();
     return EXIT_SUCCESS;

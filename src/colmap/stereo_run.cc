@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <iostream>
 #include <new>
 #include <optional>
 #include <stdexcept>
@@ -86,12 +87,18 @@ bool StereoRun::Run() {
     return false;
   }
   for (const PassPlan& pass : plan_.passes) {
-    if (!ComputePass(pass)) {
+    if (!plan_.part.IsWorker()) {
+      WriteRecords(pass);
+    }
+    if (!plan_.part.IsPreparation() && !ComputePass(pass)) {
       return false;
     }
   }
-  RemoveLevels(plan_.location);
+  if (plan_.part.IsWhole()) {
+    RemoveLevels(plan_.location);
+  }
   progress_.PrintSummary();
+  std::cout << reader_.DescribeCacheUse() << std::endl;
   return true;
 }
 
@@ -151,7 +158,7 @@ bool StereoRun::Computes(const PassPlan& pass) const {
   return false;
 }
 
-bool StereoRun::ComputePass(const PassPlan& pass) {
+void StereoRun::WriteRecords(const PassPlan& pass) const {
   if (!pass.has_maps && Computes(pass)) {
     WriteOptionsRecord(plan_.location.RecordPath(pass.pass, pass.level),
                        pass.record);
@@ -160,6 +167,9 @@ bool StereoRun::ComputePass(const PassPlan& pass) {
     WriteViewsRecord(plan_.location.ViewsRecordPath(pass.pass, pass.level),
                      pass.views_record);
   }
+}
+
+bool StereoRun::ComputePass(const PassPlan& pass) {
   std::atomic<size_t> next(0);
   std::exception_ptr error;
   const auto work = [&](int device) {
