@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iostream>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <sstream>
@@ -414,9 +415,10 @@ void FindNeeded(StereoPlan* plan) {
   }
 }
 
-// What the maps of each problem are made from. views: at the size of their
-// photographs.
+// What the maps of problems, by their indices, are made from. views: at the
+// size of their photographs.
 ViewsRecord CurrentInputs(const StereoPlan& plan,
+                          const std::vector<size_t>& problems,
                           const std::vector<SceneView>& views,
                           const PatchMatchOptions& options) {
   std::map<int, ViewFiles> files;
@@ -432,10 +434,7 @@ ViewsRecord CurrentInputs(const StereoPlan& plan,
     }
   };
   ViewsRecord inputs;
-  for (size_t i = 0; i < plan.problems.size(); ++i) {
-    if (!plan.IsOwn(i)) {
-      continue;
-    }
+  for (const size_t i : problems) {
     const ViewIndices& problem = plan.problems[i];
     describe(problem.reference);
     std::for_each(problem.sources.begin(), problem.sources.end(), describe);
@@ -598,19 +597,22 @@ void PlanShare(const PatchMatchOptions& options,
   FindNeeded(plan);
   KeepShare(plan);
   const PassPlan& pass = plan->passes[p];
-  size_t num_views = 0;
+  std::vector<size_t> computed;
   for (size_t i = 0; i < plan->problems.size(); ++i) {
-    num_views += pass.Computes(i);
+    if (pass.Computes(i)) {
+      computed.push_back(i);
+    }
   }
-  if (num_views > 0) {
-    CheckPreparation(*plan, pass, CurrentInputs(*plan, full_size, options));
+  if (!computed.empty()) {
+    CheckPreparation(*plan, pass,
+                     CurrentInputs(*plan, computed, full_size, options));
     if (p > 0) {
       CheckStepBefore(*plan, pass, plan->passes[p - 1]);
     }
   }
   std::cout << "Share " << options.share << " of step " << options.step << ", "
-            << Describe(pass) << ", has " << num_views << " views to compute."
-            << std::endl;
+            << Describe(pass) << ", has " << computed.size()
+            << " views to compute." << std::endl;
 }
 
 // evaluation/cluster reads these lines.
@@ -703,7 +705,9 @@ StereoPlan MakeStereoPlan(const PatchMatchOptions& options,
     PlanShare(options, full_size, &plan);
     return plan;
   }
-  const ViewsRecord inputs = CurrentInputs(plan, full_size, options);
+  std::vector<size_t> all(plan.problems.size());
+  std::iota(all.begin(), all.end(), 0);
+  const ViewsRecord inputs = CurrentInputs(plan, all, full_size, options);
   CheckRecords(inputs, &plan);
   CheckMaps(&plan);
   FindNeeded(&plan);

@@ -10,7 +10,7 @@ namespace tapa {
 // pass.
 
 // That it computes with the options and from the files that the run was
-// prepared with, as all other workers do. inputs: of the views of its share.
+// prepared with, as all other workers do. inputs: of the views to compute.
 // Throws Failure.
 void CheckPreparation(const StereoPlan& plan, const PassPlan& pass,
                       const ViewsRecord& inputs);

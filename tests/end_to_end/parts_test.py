@@ -99,7 +99,7 @@ class PartsTest(tiny.TestCase):
         self.assert_finished(expected)
 
     def test_worker_is_killed_and_started_again(self):
-        options = {"num_iterations": 20}
+        options = {"num_iterations": 6}
         expected = self.single_run(**options)
         num_steps = self.prepare(**options)
         for step in range(1, num_steps + 1):
