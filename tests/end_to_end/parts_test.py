@@ -10,7 +10,7 @@ import unittest
 import tiny_workspace as tiny
 
 # Two levels, so that steps have a folder to hand on and to remove.
-OPTIONS = {"num_levels": 2, "num_iterations": 2}
+OPTIONS = {"num_levels": 2}
 
 
 class PartsTest(tiny.TestCase):

@@ -1,0 +1,1 @@
+"""Dense stereo on many machines (docs/usage.md)."""
