@@ -95,7 +95,7 @@ bool StereoRun::Run() {
     }
   }
   if (plan_.part.IsWhole()) {
-    RemoveLevels(plan_.location);
+    TidyUp();
   }
   progress_.PrintSummary();
   std::cout << reader_.DescribeCacheUse() << std::endl;
@@ -134,6 +134,19 @@ void StereoRun::PrepareFolders() const {
   for (const std::string& folder : picture_folders) {
     PrepareFolder(folder, "the pictures of tapa_debug");
   }
+}
+
+void StereoRun::TidyUp() const {
+  RemoveLevels(plan_.location);
+  std::set<std::string> folders;
+  for (const ViewIndices& problem : plan_.problems) {
+    for (const MapKind kind :
+         {MapKind::kDepth, MapKind::kNormal, MapKind::kConsistencyGraph}) {
+      folders.insert(colmap::GetParentDir(
+          plan_.MapPath(kind, problem.reference, Pass::kPhotometric, 0)));
+    }
+  }
+  std::for_each(folders.begin(), folders.end(), RemoveStaleTemporaries);
 }
 
 // A small image leaves most of a GPU idle: at coarse levels it gets more views

@@ -48,6 +48,8 @@ class StereoRun {
 
   bool Stopped() const { return halted_ || stopped_(); }
   void PrepareFolders() const;
+  // Leaves nothing but the result, whichever programs have worked on it.
+  void TidyUp() const;
   bool Computes(const PassPlan& pass) const;
   void WriteRecords(const PassPlan& pass) const;
   std::vector<int> WorkersOf(const PassPlan& pass) const;
