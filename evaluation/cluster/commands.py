@@ -33,8 +33,8 @@ def parse_arguments(words=None):
     parser.add_argument("--attempts", type=command_line.whole_number(1), default=3, metavar="N",
                         help="how often a job may be run that fails (default: %(default)s)")
     parser.add_argument("--sbatch", type=shlex.split, default=[], metavar="OPTIONS",
-                        help="options of sbatch for every job, in one word, such as "
-                        "'--partition=long --cpus-per-task=8 --mem=8G'")
+                        help="options of sbatch for every job, in one word, as in "
+                        "--sbatch='--partition=long --cpus-per-task=8 --mem=8G'")
     parser.add_argument("--fuse", metavar="PLY", help="file of points to fuse the maps to")
     parser.add_argument("--fusion_options", type=shlex.split, default=[], metavar="OPTIONS",
                         help="options of stereo_fusion, in one word")
@@ -51,6 +51,7 @@ class Cluster:
         self.workspace = os.path.abspath(arguments.workspace)
         self.colmap = machine.find_program(os.path.abspath(machine.default_bin_dir()), "colmap")
         self.log = os.path.join(self.workspace, "cluster.log")
+        self.submitted = []
         self.jobs = Jobs(os.path.join(self.workspace, "cluster"), arguments.attempts)
 
     def make_folder(self):
@@ -108,8 +109,14 @@ class Cluster:
         return last
 
     def submit_one(self, script, name, after, *options):
-        return slurm.submit(script, name, self.jobs.output, *options, *self.arguments.sbatch,
-                            after_ok=after)
+        self.submitted.append(slurm.submit(
+            script, name, self.jobs.output, *options, *self.arguments.sbatch, after_ok=after))
+        return self.submitted[-1]
+
+    def cancel(self):
+        """Leaves no job behind of a run that was stopped or cannot be submitted."""
+        slurm.cancel(self.submitted)
+        shutil.rmtree(self.jobs.logs, ignore_errors=True)
 
     def end(self, last):
         """Joins the logs when all has ended. Returns the exit status."""
@@ -140,8 +147,7 @@ def main():
     cluster = Cluster(arguments)
     cluster.make_folder()
     try:
-        steps = cluster.prepare()
+        return cluster.end(cluster.submit(cluster.prepare()))
     except BaseException:
-        shutil.rmtree(cluster.jobs.logs, ignore_errors=True)
+        cluster.cancel()
         raise
-    return cluster.end(cluster.submit(steps))

@@ -31,12 +31,18 @@ def submit_and_wait(script, name, output, *options, after_any=None):
     try:
         error = process.communicate()[1].strip()
     except KeyboardInterrupt as interrupt:
-        subprocess.run(["scancel", job], check=False)
+        cancel([job])
         process.kill()
         raise Interrupted(signal.SIGINT) from interrupt
     if not job:
         raise Failure(f"sbatch refuses the job {name}: {error}")
     return process.returncode
+
+
+def cancel(jobs):
+    """Those that have ended already do not matter."""
+    if jobs:
+        subprocess.run(["scancel", *jobs], check=False, stderr=subprocess.DEVNULL)
 
 
 def _start(script, name, output, options, after_ok, after_any):

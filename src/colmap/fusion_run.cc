@@ -126,6 +126,8 @@ int FuseWorkspace(const colmap::mvs::StereoFusionOptions& options,
         FusionLocation(workspace_path, workspace_format, pmvs_option_name),
         FusionPass(input_type));
     auto fused = std::make_shared<FusedCloud>();
+    fused->max_bytes_in_memory = FusionSource::CacheBytes(options);
+    fused->folder = workspace_path;
     if (!FuseAndReport(options, &source, stopped, fused.get())) {
       std::cout << "Stopped; nothing was written." << std::endl;
       return interrupt.Signal() != 0 ? 128 + interrupt.Signal() : EXIT_FAILURE;

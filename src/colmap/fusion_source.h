@@ -22,6 +22,9 @@ class FusionSource {
   FusionSource(const colmap::mvs::StereoFusionOptions& options,
                const WorkspaceLocation& location, Pass pass);
 
+  // What its maps, and what is made of them, may take of the memory each.
+  static size_t CacheBytes(const colmap::mvs::StereoFusionOptions& options);
+
   // It reads maps when they are needed, from this object. What is wrong with
   // them throws Failure there.
   FusionProblem Problem();

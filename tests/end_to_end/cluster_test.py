@@ -1,8 +1,8 @@
 """scripts/cluster on a Slurm of two nodes, which it starts for itself (small_slurm.py)."""
 
 import os
+import signal
 import subprocess
-import sys
 import time
 import unittest
 
@@ -53,7 +53,7 @@ class ClusterTest(tiny.TestCase):
         for name, value in {**OPTIONS, **options}.items():
             words += ["--PatchMatchStereo." + name, str(value)]
         return subprocess.Popen(
-            [sys.executable, "-B", *words], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+            words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
             text=True, env={**self.slurm.environment, "TAPA_BIN_DIR": self.bin_dir})
 
     def run_script(self, *arguments, **options):
@@ -78,7 +78,7 @@ class ClusterTest(tiny.TestCase):
 
     def test_same_files(self):
         result = self.run_script("--fuse", self.path("cluster.ply"),
-                                 "--fusion_options", "--StereoFusion.agreement_num_views 3")
+                                 "--fusion_options=--StereoFusion.agreement_num_views 3")
         single = self.assert_complete(result)
         self.assert_success(tiny.run([
             tiny.COLMAP, "stereo_fusion", "--workspace_path", single, "--output_path",
@@ -119,8 +119,8 @@ class ClusterTest(tiny.TestCase):
         self.assert_complete(result)
 
     def test_node_is_killed(self):
-        # Half a minute of computing, unless it ends sooner.
-        options = {"num_iterations": 200, "num_samples": 15}
+        # Some seconds of computing.
+        options = {"num_iterations": 60, "num_samples": 15}
         marker = self.wrap(":", step=1, share="2/2")
         process = self.start(**options)
         self.addCleanup(process.kill)
@@ -138,22 +138,34 @@ class ClusterTest(tiny.TestCase):
         self.assertRegex(self.log(), "01-step, job [0-9]+, share 000002, attempt 2, on %s"
                          % other)
 
+    def test_stopped_while_it_waits(self):
+        """No job is left, and what is done is kept."""
+        marker = self.wrap("sleep 60", step=2)
+        process = self.start()
+        self.addCleanup(process.kill)
+        while not os.path.exists(marker):
+            self.assertIsNone(process.poll(), "the job did not run")
+            time.sleep(0.05)
+        process.send_signal(signal.SIGINT)
+        output, _ = process.communicate(timeout=30)
+        self.assertEqual(process.returncode, 130, output)
+        self.assertFalse(os.path.exists(os.path.join(self.workspace, "cluster")))
+        while self.slurm.run("squeue", "-h").strip():
+            time.sleep(0.2)
+        result = self.run_script()
+        self.assertNotIn("Step 1:", result.stdout)
+        self.assert_complete(result)
+
     def test_what_cannot_be_prepared(self):
         result = self.run_script(num_samples=0)
         self.assert_one_error(result, "num_samples")
         self.assertFalse(os.path.exists(os.path.join(self.workspace, "cluster")))
+        # There is no such partition, which Slurm says at the first job.
+        result = self.run_script("--sbatch=--partition=nowhere")
+        self.assert_one_error(result, "sbatch refuses")
+        self.assertFalse(os.path.exists(os.path.join(self.workspace, "cluster")))
         os.mkdir(os.path.join(self.workspace, "cluster"))
         self.assert_one_error(self.run_script(), "jobs of another run are under way")
-
-
-class WithoutSlurm(tiny.TestCase):
-
-    def test_there_is_no_sbatch(self):
-        names = tiny.make_workspace(self.folder)
-        result = tiny.run([sys.executable, "-B", SCRIPT, self.folder],
-                          env={**os.environ, "PATH": self.path("nothing")})
-        self.assert_one_error(result, "there is no sbatch", "docs/usage.md")
-        self.assertFalse(os.path.exists(tiny.map_path(self.folder, names[0])))
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 
 import os
 import re
+import shutil
 import signal
 import subprocess
 import time
@@ -9,6 +10,7 @@ import unittest
 
 import tiny_workspace as tiny
 
+SCRIPT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../scripts/cluster")
 # Two levels, so that steps have a folder to hand on and to remove.
 OPTIONS = {"num_levels": 2}
 
@@ -52,9 +54,9 @@ class PartsTest(tiny.TestCase):
         for options in ({}, {"tapa": 1}, {"geom_consistency": 0},
                         {"write_consistency_graph": 1}):
             with self.subTest(options=options):
-                tiny.shutil.rmtree(self.path("stereo"))
+                shutil.rmtree(self.path("stereo"))
                 tiny.make_config(self.folder, self.names)
-                tiny.shutil.rmtree(self.path("single"), True)
+                shutil.rmtree(self.path("single"), True)
                 num_steps = self.prepare(**options)
                 self.assertEqual(num_steps, 2 if "geom_consistency" in options else 4)
                 self.compute(range(1, num_steps + 1), 2, **options)
@@ -165,6 +167,16 @@ class PartsTest(tiny.TestCase):
         self.assert_one_error(self.part(0, "1/2"), "PatchMatchStereo.step")
         self.assert_one_error(self.part(-1, "1/2"), "PatchMatchStereo.step")
         self.assert_one_error(self.part(-2), "PatchMatchStereo.step")
+
+
+class WithoutSlurm(tiny.TestCase):
+
+    def test_there_is_no_sbatch(self):
+        names = tiny.make_workspace(self.folder)
+        result = tiny.run([SCRIPT, self.folder],
+                          env={**os.environ, "PATH": self.path("nothing")})
+        self.assert_one_error(result, "there is no sbatch", "docs/usage.md")
+        self.assertFalse(os.path.exists(tiny.map_path(self.folder, names[0])))
 
 
 if __name__ == "__main__":

@@ -22,7 +22,7 @@ SlurmctldPort={controller_port}
 SlurmUser={user}
 SlurmdUser={user}
 AuthType=auth/munge
-AuthInfo=socket={folder}/munge.socket,cred_expire=2
+AuthInfo=socket={folder}/munge.socket,cred_expire=5
 CredType=cred/munge
 StateSaveLocation={folder}/state
 SlurmdSpoolDir={folder}/spool-%n
@@ -109,16 +109,29 @@ class SmallSlurm:
 
     def kill_node(self, name):
         """As if its power went: its daemon, and with it all of its jobs."""
-        self._kill(self._daemons.pop(name))
-        for number in self._processes():
-            if self._environment_of(number).get("SLURMD_NODENAME") == name:
-                _kill(number)
+        self._kill_jobs(self._daemons.pop(name), name)
 
     def stop(self):
         for name in list(self._daemons)[::-1]:
-            self._kill(self._daemons.pop(name))
-        for number in self._processes():
-            _kill(number)
+            self._kill_jobs(self._daemons.pop(name), name)
+
+    def _kill_jobs(self, daemon, node):
+        """First the daemons, lest they tell the controller how the jobs ended."""
+        daemon.kill()
+        daemon.wait()
+        jobs = [number for number in map(int, filter(str.isdigit, os.listdir("/proc")))
+                if self._is_job(number, node)]
+        parents = {_parent(number) for number in jobs}
+        for number in [each for each in parents if _name(each) == "slurmstepd"] + jobs:
+            try:
+                os.kill(number, signal.SIGKILL)
+            except ProcessLookupError:
+                pass
+
+    def _is_job(self, number, node):
+        environment = _read("/proc/%d/environ" % number).split("\0")
+        return "SLURM_CONF=" + self.path("slurm.conf") in environment and \
+            "SLURMD_NODENAME=" + node in environment
 
     def run(self, *command):
         return subprocess.run(command, env=self.environment, stdout=subprocess.PIPE,
@@ -144,31 +157,20 @@ class SmallSlurm:
                 with open(self.path(name), errors="replace") as file:
                     yield from ["%s: %s" % (name, line.rstrip()) for line in file][-5:]
 
-    @staticmethod
-    def _kill(process):
-        process.kill()
-        process.wait()
 
-    @staticmethod
-    def _environment_of(number):
-        try:
-            with open("/proc/%d/environ" % number, "rb") as file:
-                items = file.read().decode(errors="replace").split("\0")
-        except OSError:
-            return {}
-        return dict(item.split("=", 1) for item in items if "=" in item)
-
-    def _processes(self):
-        """What was started with this Slurm's configuration: its jobs are nobody's children."""
-        for number in map(int, filter(str.isdigit, os.listdir("/proc"))):
-            environment = self._environment_of(number)
-            if number != os.getpid() and \
-                    environment.get("SLURM_CONF") == self.environment["SLURM_CONF"]:
-                yield number
-
-
-def _kill(number):
+def _read(path):
+    """"" if the process has ended."""
     try:
-        os.kill(number, signal.SIGKILL)
-    except ProcessLookupError:
-        pass
+        with open(path, "rb") as file:
+            return file.read().decode(errors="replace")
+    except OSError:
+        return ""
+
+
+def _name(process):
+    return _read("/proc/%d/comm" % process).strip()
+
+
+def _parent(process):
+    fields = _read("/proc/%d/stat" % process).rpartition(")")[2].split()
+    return int(fields[1]) if fields else 0
