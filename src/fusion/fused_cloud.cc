@@ -16,7 +16,7 @@ void FusedCloud::Add(FusedView view) {
     view.begin_in_file = file_->Append(view.points.data(), view.points.size());
     view.num_in_file = view.points.size();
     view.file = file_;
-    view.points = {};
+    std::vector<FusedPoint>().swap(view.points);  // Its memory, too.
   }
   views.push_back(std::move(view));
 }
