@@ -73,6 +73,7 @@ class MemoryTest(tiny.TestCase):
         """run: number of views to the output of the program. What there is of a view besides
         photograph, maps and points, such as its camera and what it shares with others, is small."""
         few, many = (peak_megabytes(run(number)) for number in (100, 1000))
+        print("Peak memory with 100 views %d MB, with 1,000 views %d MB" % (few, many))
         self.assertGreater(few, 10)
         self.assertLess(many - few, 900 * MEGABYTES_PER_VIEW, "%d and %d MB" % (few, many))
 
