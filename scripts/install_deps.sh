@@ -6,7 +6,8 @@
 #   scripts/install_deps.sh [GROUP]...
 #
 # GROUP: build (to build the program and pack it), evaluation (to run scripts/evaluate
-# and the demo), tests (to build all the rest); if none is named, the first two.
+# and the demo), tests (to build all the rest), cluster (Slurm, with which scripts/cluster
+# is tested); if none is named, the first two.
 set -euo pipefail
 
 here=$(cd "$(dirname "$0")" && pwd)
@@ -30,6 +31,7 @@ tests=(
   libbenchmark-dev libboost-context-dev libgtest-dev
   pybind11-dev python3-dev python3-setuptools  # The Python package.
 )
+cluster=(munge slurm-client slurmctld slurmd)
 # Come along with what else of the tests is installed, but are not missed: povray renders
 # scenes of examples/, and chromium looks at pages (their tests are skipped without them).
 optional=()
@@ -41,9 +43,10 @@ for group in "$@"; do
     build) packages+=("${build[@]}") ;;
     tests) packages+=("${tests[@]}") optional=(povray chromium) ;;
     evaluation) packages+=("${evaluation[@]}") ;;
+    cluster) packages+=("${cluster[@]}") ;;
     *)
       echo "ERROR: there is no group $group; usage:" \
-        "$(basename "$0") [build|evaluation|tests]..." >&2
+        "$(basename "$0") [build|evaluation|tests|cluster]..." >&2
       exit 1
       ;;
   esac

@@ -2,6 +2,7 @@
 
 #include <dirent.h>
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -12,6 +13,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <filesystem>
 
 #include "src/base/failure.h"
@@ -19,12 +21,21 @@
 namespace tapa {
 namespace {
 
+constexpr char kPart[] = ".part-";
+
 // What a temporary name has between the final one and the number of the
 // process.
 std::string TemporaryMark() {
   char host[HOST_NAME_MAX + 1] = "";
   gethostname(host, sizeof(host) - 1);
-  return std::string(".part-") + host + "-";
+  return std::string(kPart) + host + "-";
+}
+
+// Whether nobody has written to a file for so long that nobody will.
+bool IsForgotten(const std::string& path) {
+  constexpr time_t kDay = 24 * 3600;
+  struct stat file;
+  return stat(path.c_str(), &file) == 0 && time(nullptr) - file.st_mtime > kDay;
 }
 
 // Beside the file, and unlike any other. A long name is cut, so that there is
@@ -112,13 +123,17 @@ void RemoveStaleTemporaries(const std::string& folder) {
   const std::string mark = TemporaryMark();
   while (const dirent* entry = readdir(dir)) {
     const std::string name = entry->d_name;
+    const std::string path = folder + "/" + name;
     const size_t position = name.rfind(mark);
     if (position == std::string::npos) {
+      if (name.find(kPart) != std::string::npos && IsForgotten(path)) {
+        unlink(path.c_str());
+      }
       continue;
     }
     const long process = std::atol(name.c_str() + position + mark.size());
     if (process > 0 && kill(process, 0) != 0 && errno == ESRCH) {
-      unlink((folder + "/" + name).c_str());
+      unlink(path.c_str());
     }
   }
   closedir(dir);

@@ -34,7 +34,7 @@ class AtomicFile {
 };
 
 // Removes from a folder the unfinished files of processes of this machine that
-// do not live any more.
+// do not live any more, and those of other machines that are a day old.
 void RemoveStaleTemporaries(const std::string& folder);
 
 // Makes a folder if it is not there, removes such files from it, and throws

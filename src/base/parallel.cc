@@ -4,13 +4,12 @@
 #include <exception>
 #include <system_error>
 
+#include "src/base/machine_limits.h"
+
 namespace tapa {
 
 int EffectiveNumThreads(int num_threads) {
-  return num_threads > 0
-             ? num_threads
-             : std::max(1,
-                        static_cast<int>(std::thread::hardware_concurrency()));
+  return num_threads > 0 ? num_threads : FindMachineLimits().num_cpus;
 }
 
 struct ThreadTeam::Loop {

@@ -12,8 +12,14 @@ namespace tapa {
 // has none.
 class FolderLock {
  public:
+  enum class With {
+    kNobody,
+    // Others that say so, too, such as on other machines.
+    kWorkers,
+  };
+
   // Throws Failure if another has it.
-  explicit FolderLock(const std::string& folder);
+  FolderLock(const std::string& folder, With with);
   ~FolderLock();
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;

@@ -4,12 +4,14 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
 #include <map>
 #include <sstream>
 #include <system_error>
 
 #include "mvs/fusion.h"
 #include "src/base/atomic_file.h"
+#include "src/base/peak_memory.h"
 #include "src/fusion/packed_normal.h"
 #include "util/endian.h"
 
@@ -79,7 +81,7 @@ struct WeighedPoints {
   template <typename Visitor>
   void VisitPoints(const Visitor& visit) const {
     for (const FusedView& view : cloud.views) {
-      for (const FusedPoint& fused : view.points) {
+      view.VisitPoints([&](const FusedPoint& fused) {
         const Vec3 normal = UnpackNormal(fused.normal);
         colmap::PlyPoint point;
         point.x = fused.position.x;
@@ -92,7 +94,7 @@ struct WeighedPoints {
         point.g = fused.color.g;
         point.b = fused.color.b;
         visit(point, fused.confidence);
-      }
+      });
     }
   }
 
@@ -100,7 +102,7 @@ struct WeighedPoints {
   void VisitVisible(const Visitor& visit) const {
     std::vector<int> images;
     for (const FusedView& view : cloud.views) {
-      for (const FusedPoint& point : view.points) {
+      view.VisitPoints([&](const FusedPoint& point) {
         images = {view.view};
         for (size_t n = 0; n < view.neighbors.size(); ++n) {
           if ((point.visible >> n) & 1) {
@@ -108,7 +110,7 @@ struct WeighedPoints {
           }
         }
         visit(images);
-      }
+      });
     }
   }
 };
@@ -197,6 +199,7 @@ void WriteFusedPoints(const std::string& path,
     WriteFusedPoints(path, fusion.GetFusedPoints(),
                      fusion.GetFusedPointsVisibility(), fusion.GetOrigin());
   }
+  std::cout << DescribePeakMemory() << std::endl;
 }
 
 std::vector<colmap::PlyPoint> PlyPoints(const FusedCloud& cloud) {

@@ -30,7 +30,7 @@ void WriteFusedPoints(const std::string& path,
 // With the property `confidence` in addition.
 void WriteFusedPoints(const std::string& path, const FusedCloud& cloud,
                       const Eigen::Vector3d& origin);
-// What a fusion has made, by either rule.
+// What a fusion has made, by either rule; prints how much memory it took.
 void WriteFusedPoints(const std::string& path,
                       const colmap::mvs::StereoFusion& fusion);
 

@@ -126,6 +126,8 @@ int FuseWorkspace(const colmap::mvs::StereoFusionOptions& options,
         FusionLocation(workspace_path, workspace_format, pmvs_option_name),
         FusionPass(input_type));
     auto fused = std::make_shared<FusedCloud>();
+    fused->max_bytes_in_memory = FusionSource::CacheBytes(options);
+    fused->folder = workspace_path;
     if (!FuseAndReport(options, &source, stopped, fused.get())) {
       std::cout << "Stopped; nothing was written." << std::endl;
       return interrupt.Signal() != 0 ? 128 + interrupt.Signal() : EXIT_FAILURE;
@@ -135,7 +137,8 @@ int FuseWorkspace(const colmap::mvs::StereoFusionOptions& options,
       ReportNoPoints(options);
       return EXIT_FAILURE;
     }
-    std::cout << "Number of fused points: " << fused->NumPoints() << std::endl;
+    std::cout << "Number of fused points: " << fused->NumPoints() << std::endl
+              << source.DescribeCacheUse() << std::endl;
     *cloud = fused;
     *origin = source.Origin();
     return EXIT_SUCCESS;

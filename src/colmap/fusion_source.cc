@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "src/base/failure.h"
+#include "src/base/machine_limits.h"
 #include "src/colmap/fusion_input.h"
 #include "src/colmap/masks.h"
 #include "src/fusion/packed_normal.h"
@@ -39,8 +40,13 @@ FusionSource::FusionSource(const colmap::mvs::StereoFusionOptions& options,
   }
   neighbors_ = Neighbors(model);
   surfaces_ = std::make_unique<ViewCache<SurfacePixel>>(
-      static_cast<size_t>(options.agreement.cache_size * (1 << 30)),
-      [this](int view) { return ReadSurface(view); });
+      CacheBytes(options), [this](int view) { return ReadSurface(view); });
+}
+
+size_t FusionSource::CacheBytes(
+    const colmap::mvs::StereoFusionOptions& options) {
+  return static_cast<size_t>(std::min(options.agreement.cache_size * (1 << 30),
+                                      FindMachineLimits().memory_bytes / 4));
 }
 
 void FusionSource::FitToMaps(SceneView* view) const {

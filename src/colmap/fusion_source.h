@@ -22,6 +22,9 @@ class FusionSource {
   FusionSource(const colmap::mvs::StereoFusionOptions& options,
                const WorkspaceLocation& location, Pass pass);
 
+  // What its maps, and what is made of them, may take of the memory each.
+  static size_t CacheBytes(const colmap::mvs::StereoFusionOptions& options);
+
   // It reads maps when they are needed, from this object. What is wrong with
   // them throws Failure there.
   FusionProblem Problem();
@@ -31,6 +34,10 @@ class FusionSource {
   // Index in the model and name of a view of the problem.
   int ModelIndex(int view) const { return model_indices_[view]; }
   const std::string& Name(int view) const { return views_[view].name; }
+  // How many of the maps that were asked for were in memory already, as a line.
+  std::string DescribeCacheUse() const {
+    return "Found in the cache: " + surfaces_->Use().Describe("maps");
+  }
 
  private:
   // Gives a view the size of its maps, or of max_image_size.

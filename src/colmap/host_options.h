@@ -28,6 +28,8 @@ struct HostOptions {
   std::string prior_path;
   TapaOptions tapa;
   std::string tapa_debug;
+  int step = -1;
+  std::string share = "1/1";
 };
 
 // The table of these options: calls visit(entry, pointer to the member) for
@@ -97,6 +99,14 @@ void VisitHostOptions(Options* options, const Visitor& visit) {
   option("tapa_debug", &o.tapa_debug, false,
          "Folder for pictures of every step of TAPA for every view that the "
          "last pass computes; empty: none");
+  option("step", &o.step, false,
+         "On several machines (docs/usage.md): 0 prepares the run and says "
+         "which steps it has, a number from 1 on computes the views of one "
+         "step",
+         OptionRange::AtLeast(0).OrMinusOne("all, by one program"));
+  option("share", &o.share, false,
+         "Which views of a step to compute, as in 2/10: the second of ten "
+         "shares");
 }
 
 }  // namespace tapa

@@ -9,12 +9,15 @@
 
 #include "mvs/patch_match.h"
 #include "src/base/failure.h"
+#include "src/base/machine_limits.h"
 #include "src/base/parallel.h"
+#include "src/base/peak_memory.h"
 #include "src/colmap/engine_options.h"
 #include "src/colmap/fatal_errors.h"
 #include "src/colmap/folder_lock.h"
 #include "src/colmap/interrupt.h"
 #include "src/colmap/option_list.h"
+#include "src/colmap/run_part.h"
 #include "src/colmap/stereo_plan.h"
 #include "src/colmap/stereo_run.h"
 #include "src/colmap/workers.h"
@@ -58,8 +61,13 @@ void PatchMatchController::Run() {
   const auto stopped = [&] { return interrupt.Signal() != 0 || IsStopped(); };
   exit_status_ = EXIT_FAILURE;
   try {
-    const tapa::FolderLock lock(workspace_path_);
+    const tapa::FolderLock lock(workspace_path_,
+                                tapa::RunPart(options_).IsWorker()
+                                    ? tapa::FolderLock::With::kWorkers
+                                    : tapa::FolderLock::With::kNobody);
     tapa::StereoPlan plan = tapa::MakeStereoPlan(options_, location);
+    tapa::MachineLimits limits = tapa::FindMachineLimits();
+    limits.num_cpus = tapa::EffectiveNumThreads(options_.num_threads);
     const tapa::Workers workers = tapa::ChooseWorkers(
         options_.use_gpu, options_.gpu_index, tapa::FindDevices(),
         [&](int device) {
@@ -68,7 +76,7 @@ void PatchMatchController::Run() {
           return tapa::TryDevice(device, tapa::EngineOptions(options_),
                                  stopped);
         },
-        tapa::EffectiveNumThreads(options_.num_threads), plan.MaxMegapixels());
+        limits, plan.MaxMegapixels());
     if (!workers.message.empty()) {
       std::cout << workers.message << std::endl;
     }
@@ -91,6 +99,7 @@ void PatchMatchController::Run() {
     tapa::PrintError(error.what());
   }
   GetTimer().PrintMinutes();
+  std::cout << tapa::DescribePeakMemory() << std::endl;
 }
 
 }  // namespace mvs

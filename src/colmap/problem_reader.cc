@@ -1,10 +1,9 @@
 #include "src/colmap/problem_reader.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <map>
 
+#include "src/base/machine_limits.h"
 #include "src/base/map_files.h"
 #include "src/colmap/masks.h"
 #include "util/misc.h"
@@ -17,8 +16,8 @@ constexpr float kSmallestDepth = 1e-4f;
 
 double CacheBytes(const StereoPlan& plan) {
   const double gigabytes = plan.passes.back().options.cache_size;
-  const double memory = 1.0 * sysconf(_SC_PHYS_PAGES) * sysconf(_SC_PAGESIZE);
-  return std::min(gigabytes * 1024 * 1024 * 1024, memory / 2);
+  return std::min(gigabytes * 1024 * 1024 * 1024,
+                  FindMachineLimits().memory_bytes / 2);
 }
 
 }  // namespace
@@ -149,6 +148,12 @@ std::unique_ptr<ProblemInput> ProblemReader::Read(
   // The engine takes no 0, by which users mean that there is no lower end.
   to.depth_min = std::max(to.depth_min, kSmallestDepth * to.depth_max);
   return input;
+}
+
+std::string ProblemReader::DescribeCacheUse() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return "Found in the cache: " + photos_.Use().Describe("photographs") + ", " +
+         depth_maps_.Use().Describe("depth maps");
 }
 
 }  // namespace tapa

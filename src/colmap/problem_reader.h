@@ -5,6 +5,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "src/base/map.h"
@@ -24,7 +25,8 @@ struct ProblemInput {
 };
 
 // Reads what the engine needs to know of a view, and keeps as much as the
-// option cache_size says, but no more than half of the machine's memory. May be
+// option cache_size says, but no more than half of the memory
+// that it may use (machine_limits.h). May be
 // used by several threads at a time: they read one after the other.
 class ProblemReader {
  public:
@@ -40,6 +42,9 @@ class ProblemReader {
   std::unique_ptr<ProblemInput> Read(const ViewIndices& problem,
                                      const PassPlan& pass,
                                      const std::function<bool()>& stopped);
+
+  // How much of what was asked for was in memory already, as a line.
+  std::string DescribeCacheUse();
 
  private:
   // A view at a level, as one number for the caches.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iostream>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <sstream>
@@ -11,6 +12,7 @@
 #include "src/colmap/engine_options.h"
 #include "src/colmap/masks.h"
 #include "src/colmap/progress.h"
+#include "src/colmap/worker_checks.h"
 #include "util/misc.h"
 
 namespace tapa {
@@ -228,10 +230,30 @@ std::vector<PassPlan> Passes(const PatchMatchOptions& options,
 
 std::vector<int> ViewsToCompute(const StereoPlan& plan) {
   std::vector<int> views;
-  for (const ViewIndices& problem : plan.problems) {
-    views.push_back(problem.reference);
+  for (size_t i = 0; i < plan.problems.size(); ++i) {
+    if (plan.IsOwn(i)) {
+      views.push_back(plan.problems[i].reference);
+    }
   }
   return views;
+}
+
+std::map<int, FittedPrior> PriorsOf(const PatchMatchOptions& options,
+                                    const colmap::mvs::Model& model,
+                                    const StereoPlan& plan) {
+  std::vector<int> views = ViewsToCompute(plan);
+  if (plan.part.IsWorker()) {
+    // That some view of the run has one was seen when it was prepared.
+    const auto has_none = [&](int view) {
+      return PriorPath(options.prior_path, plan.View(view, 0).name).empty();
+    };
+    views.erase(std::remove_if(views.begin(), views.end(), has_none),
+                views.end());
+    if (views.empty()) {
+      return {};
+    }
+  }
+  return FitPriors(options.prior_path, model, plan.views[0], views);
 }
 
 // A filter that asks for more views than there are makes do with all of them.
@@ -329,20 +351,33 @@ bool IsDone(const StereoPlan& plan, const PassPlan& pass, int view) {
   return has_depth && has_normal && has_graph;
 }
 
+// Whether a plan depends on which maps a pass has. What a worker has to compute
+// depends on its own maps and on those of later passes, which nobody computes
+// at the same time.
+bool LooksAtMaps(const StereoPlan& plan, size_t pass, size_t problem) {
+  if (!plan.part.IsWorker()) {
+    return true;
+  }
+  const size_t own_pass = plan.part.PassIndex(plan.passes.size());
+  return pass > own_pass || (pass == own_pass && plan.IsOwn(problem));
+}
+
 // Looks at the maps that are there already.
 void CheckMaps(StereoPlan* plan) {
   const bool is_geometric = plan->passes.back().pass == Pass::kGeometric;
-  for (PassPlan& pass : plan->passes) {
+  for (size_t p = 0; p < plan->passes.size(); ++p) {
+    PassPlan& pass = plan->passes[p];
     for (size_t i = 0; i < plan->problems.size(); ++i) {
       const bool is_result = &pass == &plan->passes.back();
       pass.is_done.push_back(pass.has_maps &&
                              !(is_result && plan->IsHelper(i)) &&
+                             LooksAtMaps(*plan, p, i) &&
                              IsDone(*plan, pass, plan->problems[i].reference));
     }
   }
-  for (const ViewIndices& problem : plan->problems) {
-    for (const int source : problem.sources) {
-      if (is_geometric) {
+  for (size_t i = 0; i < plan->problems.size(); ++i) {
+    for (const int source : plan->problems[i].sources) {
+      if (is_geometric && plan->IsOwn(i)) {
         HasMap(*plan, MapKind::kDepth, source, Pass::kPhotometric, 0);
       }
     }
@@ -380,9 +415,10 @@ void FindNeeded(StereoPlan* plan) {
   }
 }
 
-// What the maps of each problem are made from. views: at the size of their
-// photographs.
+// What the maps of problems, by their indices, are made from. views: at the
+// size of their photographs.
 ViewsRecord CurrentInputs(const StereoPlan& plan,
+                          const std::vector<size_t>& problems,
                           const std::vector<SceneView>& views,
                           const PatchMatchOptions& options) {
   std::map<int, ViewFiles> files;
@@ -398,7 +434,8 @@ ViewsRecord CurrentInputs(const StereoPlan& plan,
     }
   };
   ViewsRecord inputs;
-  for (const ViewIndices& problem : plan.problems) {
+  for (const size_t i : problems) {
+    const ViewIndices& problem = plan.problems[i];
     describe(problem.reference);
     std::for_each(problem.sources.begin(), problem.sources.end(), describe);
     inputs[views[problem.reference].name] =
@@ -537,6 +574,60 @@ void UpdateViewsRecords(const ViewsRecord& inputs, StereoPlan* plan) {
   }
 }
 
+// Leaves to a worker its share of its pass.
+void KeepShare(StereoPlan* plan) {
+  const size_t own_pass = plan->part.PassIndex(plan->passes.size());
+  for (size_t p = 0; p < plan->passes.size(); ++p) {
+    std::vector<bool>& is_needed = plan->passes[p].is_needed;
+    for (size_t i = 0; i < is_needed.size(); ++i) {
+      is_needed[i] = is_needed[i] && p == own_pass && plan->IsOwn(i);
+    }
+  }
+}
+
+std::string Describe(const PassPlan& pass) {
+  return "level " + std::to_string(pass.level) + " " + PassName(pass.pass);
+}
+
+// What a worker computes, of which it looks at nothing that others do.
+void PlanShare(const PatchMatchOptions& options,
+               const std::vector<SceneView>& full_size, StereoPlan* plan) {
+  const size_t p = plan->part.PassIndex(plan->passes.size());
+  CheckMaps(plan);
+  FindNeeded(plan);
+  KeepShare(plan);
+  const PassPlan& pass = plan->passes[p];
+  std::vector<size_t> computed;
+  for (size_t i = 0; i < plan->problems.size(); ++i) {
+    if (pass.Computes(i)) {
+      computed.push_back(i);
+    }
+  }
+  if (!computed.empty()) {
+    CheckPreparation(*plan, pass,
+                     CurrentInputs(*plan, computed, full_size, options));
+    if (p > 0) {
+      CheckStepBefore(*plan, pass, plan->passes[p - 1]);
+    }
+  }
+  std::cout << "Share " << options.share << " of step " << options.step << ", "
+            << Describe(pass) << ", has " << computed.size()
+            << " views to compute." << std::endl;
+}
+
+// evaluation/cluster reads these lines.
+void PrintSteps(const StereoPlan& plan) {
+  for (size_t p = 0; p < plan.passes.size(); ++p) {
+    size_t num_views = 0;
+    for (size_t i = 0; i < plan.problems.size(); ++i) {
+      num_views += plan.passes[p].Computes(i);
+    }
+    std::cout << "Step " << p + 1 << " of " << plan.passes.size() << ": "
+              << Describe(plan.passes[p]) << ", " << num_views
+              << " views to compute" << std::endl;
+  }
+}
+
 void PrintViews(const StereoPlan& plan) {
   std::cout << "Configuration has " << plan.num_results << " views.";
   const size_t num_helpers = plan.problems.size() - plan.num_results;
@@ -553,6 +644,12 @@ void PrintViews(const StereoPlan& plan) {
 }
 
 }  // namespace
+
+bool StereoPlan::IsOwn(size_t problem) const {
+  // Helpers are none any more for who plans when they have their maps.
+  return IsHelper(problem) ? part.HasNumber(problems[problem].reference)
+                           : part.HasItem(problem, num_results);
+}
 
 int StereoPlan::NumDone() const {
   const std::vector<bool>& is_done = passes.back().is_done;
@@ -580,6 +677,7 @@ StereoPlan MakeStereoPlan(const PatchMatchOptions& options,
   const colmap::mvs::Model model = ReadWorkspace(location);
   StereoPlan plan;
   plan.location = location;
+  plan.part = RunPart(options);
   plan.views.push_back(SceneViews(model, options.max_image_size));
   const int num_levels = NumLevels(options, LongestSide(plan.views[0]));
   for (int level = 1; level < num_levels; ++level) {
@@ -598,18 +696,27 @@ StereoPlan MakeStereoPlan(const PatchMatchOptions& options,
   AddHelpers(options, &plan);
   CheckDepthRanges(options, plan);
   WarnOfFilter(options, plan);
-  const std::vector<int> views = ViewsToCompute(plan);
-  CheckMasks(options.mask_path, plan.views[0], views);
-  plan.priors = FitPriors(options.prior_path, model, plan.views[0], views);
+  CheckMasks(options.mask_path, plan.views[0], ViewsToCompute(plan));
+  plan.priors = PriorsOf(options, model, plan);
   plan.passes = Passes(options, plan);
-  const ViewsRecord inputs =
-      CurrentInputs(plan, SceneViews(model, /* max_image_size */ -1), options);
+  const std::vector<SceneView> full_size =
+      SceneViews(model, /* max_image_size */ -1);
+  if (plan.part.IsWorker()) {
+    PlanShare(options, full_size, &plan);
+    return plan;
+  }
+  std::vector<size_t> all(plan.problems.size());
+  std::iota(all.begin(), all.end(), 0);
+  const ViewsRecord inputs = CurrentInputs(plan, all, full_size, options);
   CheckRecords(inputs, &plan);
   CheckMaps(&plan);
   FindNeeded(&plan);
   UpdateViewsRecords(inputs, &plan);
   WarnOfMissingPictures(plan);
   PrintViews(plan);
+  if (plan.part.IsPreparation()) {
+    PrintSteps(plan);
+  }
   return plan;
 }
 

@@ -11,6 +11,7 @@
 #include "src/colmap/pass.h"
 #include "src/colmap/priors.h"
 #include "src/colmap/problem_config.h"
+#include "src/colmap/run_part.h"
 #include "src/colmap/views.h"
 #include "src/colmap/views_record.h"
 #include "src/colmap/workspace.h"
@@ -61,10 +62,14 @@ struct StereoPlan {
   std::map<int, FittedPrior> priors;
   // One after the other; the maps of the last one are the result.
   std::vector<PassPlan> passes;
+  // What this program does of them.
+  RunPart part;
   // Whether maps of coarse levels are there that this run cannot go on with.
   bool drops_levels = false;
 
   bool IsHelper(size_t problem) const { return problem >= num_results; }
+  // Whether a problem is this program's part; all are, but of a worker's.
+  bool IsOwn(size_t problem) const;
   // Number of views whose result is there.
   int NumDone() const;
   // Of the largest view that is computed, at level 0.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <iostream>
 #include <new>
 #include <optional>
 #include <stdexcept>
@@ -86,12 +87,18 @@ bool StereoRun::Run() {
     return false;
   }
   for (const PassPlan& pass : plan_.passes) {
-    if (!ComputePass(pass)) {
+    if (!plan_.part.IsWorker()) {
+      WriteRecords(pass);
+    }
+    if (!plan_.part.IsPreparation() && !ComputePass(pass)) {
       return false;
     }
   }
-  RemoveLevels(plan_.location);
+  if (plan_.part.IsWhole()) {
+    TidyUp();
+  }
   progress_.PrintSummary();
+  std::cout << reader_.DescribeCacheUse() << std::endl;
   return true;
 }
 
@@ -129,6 +136,19 @@ void StereoRun::PrepareFolders() const {
   }
 }
 
+void StereoRun::TidyUp() const {
+  RemoveLevels(plan_.location);
+  std::set<std::string> folders;
+  for (const ViewIndices& problem : plan_.problems) {
+    for (const MapKind kind :
+         {MapKind::kDepth, MapKind::kNormal, MapKind::kConsistencyGraph}) {
+      folders.insert(colmap::GetParentDir(
+          plan_.MapPath(kind, problem.reference, Pass::kPhotometric, 0)));
+    }
+  }
+  std::for_each(folders.begin(), folders.end(), RemoveStaleTemporaries);
+}
+
 // A small image leaves most of a GPU idle: at coarse levels it gets more views
 // at a time, while the CPU has all of its threads at work on one.
 std::vector<int> StereoRun::WorkersOf(const PassPlan& pass) const {
@@ -151,7 +171,7 @@ bool StereoRun::Computes(const PassPlan& pass) const {
   return false;
 }
 
-bool StereoRun::ComputePass(const PassPlan& pass) {
+void StereoRun::WriteRecords(const PassPlan& pass) const {
   if (!pass.has_maps && Computes(pass)) {
     WriteOptionsRecord(plan_.location.RecordPath(pass.pass, pass.level),
                        pass.record);
@@ -160,6 +180,9 @@ bool StereoRun::ComputePass(const PassPlan& pass) {
     WriteViewsRecord(plan_.location.ViewsRecordPath(pass.pass, pass.level),
                      pass.views_record);
   }
+}
+
+bool StereoRun::ComputePass(const PassPlan& pass) {
   std::atomic<size_t> next(0);
   std::exception_ptr error;
   const auto work = [&](int device) {

@@ -17,9 +17,10 @@ namespace tapa {
 
 struct TapaRecord;
 
-// Computes what a plan lists, pass by pass, each worker one view after the
-// other. A run that was stopped, or ended by an error, leaves complete maps,
-// and another one that goes on from there ends with the same files.
+// Does a program's part of what a plan lists, pass by pass, each worker one
+// view after the other. A run that was stopped, or ended by an error, leaves
+// complete maps, and another one that goes on from there ends with the same
+// files.
 class StereoRun {
  public:
   // workers: for each the GPU that it computes on, or kCpu. stopped: asked
@@ -47,7 +48,10 @@ class StereoRun {
 
   bool Stopped() const { return halted_ || stopped_(); }
   void PrepareFolders() const;
+  // Leaves nothing but the result, whichever programs have worked on it.
+  void TidyUp() const;
   bool Computes(const PassPlan& pass) const;
+  void WriteRecords(const PassPlan& pass) const;
   std::vector<int> WorkersOf(const PassPlan& pass) const;
   // The functions below return false if stopped.
   bool ComputePass(const PassPlan& pass);

@@ -5,11 +5,25 @@
 #include <functional>
 #include <list>
 #include <memory>
+#include <string>
 #include <unordered_map>
 
 #include "src/base/map.h"
 
 namespace tapa {
+
+// How often something was asked for, and was in memory already.
+struct CacheUse {
+  size_t num_asked = 0;
+  size_t num_found = 0;
+
+  // Such as "95 % of 1234 depth maps".
+  std::string Describe(const std::string& what) const {
+    const size_t percent = num_asked > 0 ? 100 * num_found / num_asked : 100;
+    return std::to_string(percent) + " % of " + std::to_string(num_asked) +
+           " " + what;
+  }
+};
 
 // Keeps what was read from files last, up to a number of bytes. What a caller
 // still holds stays alive beyond that.
@@ -22,7 +36,9 @@ class ViewCache {
 
   std::shared_ptr<const Map<T>> Get(int index) {
     const auto found = positions_.find(index);
+    ++use_.num_asked;
     if (found != positions_.end()) {
+      ++use_.num_found;
       entries_.splice(entries_.begin(), entries_, found->second);
     } else {
       entries_.push_front(
@@ -39,6 +55,8 @@ class ViewCache {
     return map;
   }
 
+  const CacheUse& Use() const { return use_; }
+
  private:
   struct Entry {
     int index;
@@ -52,6 +70,7 @@ class ViewCache {
   const size_t max_bytes_;
   const std::function<Map<T>(int)> read_;
   size_t bytes_ = 0;
+  CacheUse use_;
   // The last used one first.
   std::list<Entry> entries_;
   std::unordered_map<int, typename std::list<Entry>::iterator> positions_;

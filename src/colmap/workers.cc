@@ -41,7 +41,7 @@ Workers CpuInstead(const std::string& why) {
 
 Workers AllGpus(const DeviceList& list,
                 const std::function<std::string(int)>& what_is_wrong,
-                int num_threads, double megapixels_per_view) {
+                const MachineLimits& limits, double megapixels_per_view) {
   std::vector<int> sound;
   std::string wrong;
   for (int i = 0; i < static_cast<int>(list.devices.size()); ++i) {
@@ -57,7 +57,7 @@ Workers AllGpus(const DeviceList& list,
     return CpuInstead(wrong);
   }
   Workers workers;
-  const int times = WorkersPerGpu(num_threads, static_cast<int>(sound.size()),
+  const int times = WorkersPerGpu(limits, static_cast<int>(sound.size()),
                                   megapixels_per_view);
   for (const int index : sound) {
     workers.devices.insert(workers.devices.end(), times, index);
@@ -85,13 +85,17 @@ Workers NamedGpus(const std::vector<int>& indices, const DeviceList& list,
 
 }  // namespace
 
-int WorkersPerGpu(int num_threads, int num_gpus, double megapixels_per_view) {
+int WorkersPerGpu(const MachineLimits& limits, int num_gpus,
+                  double megapixels_per_view) {
   constexpr int kMin = 2;
   constexpr int kMax = 8;
   constexpr double kMaxMegapixels = 32;
-  const int by_threads = num_threads / (2 * num_gpus);
+  constexpr double kBytesPerMegapixel = 5e9 / kMaxMegapixels;
+  const int by_threads = limits.num_cpus / (2 * num_gpus);
+  const double megapixels = std::min(
+      kMaxMegapixels, limits.memory_bytes / 2 / num_gpus / kBytesPerMegapixel);
   const int by_memory =
-      static_cast<int>(std::min(kMaxMegapixels / megapixels_per_view, 1e3));
+      static_cast<int>(std::min(megapixels / megapixels_per_view, 1e3));
   return std::clamp(std::min(by_threads, by_memory), kMin, kMax);
 }
 
@@ -115,7 +119,7 @@ std::vector<int> ParseGpuIndices(const std::string& gpu_index) {
 Workers ChooseWorkers(bool use_gpu, const std::string& gpu_index,
                       const DeviceList& list,
                       const std::function<std::string(int)>& try_device,
-                      int num_threads, double megapixels_per_view) {
+                      const MachineLimits& limits, double megapixels_per_view) {
   if (!use_gpu) {
     return {{kCpu}, ""};
   }
@@ -128,7 +132,7 @@ Workers ChooseWorkers(bool use_gpu, const std::string& gpu_index,
   };
   const std::vector<int> named = ParseGpuIndices(gpu_index);
   return named.empty()
-             ? AllGpus(list, what_is_wrong, num_threads, megapixels_per_view)
+             ? AllGpus(list, what_is_wrong, limits, megapixels_per_view)
              : NamedGpus(named, list, what_is_wrong);
 }
 

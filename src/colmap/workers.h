@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "src/base/machine_limits.h"
 #include "src/mvs/devices.h"
 
 namespace tapa {
@@ -28,18 +29,21 @@ std::vector<int> ParseGpuIndices(const std::string& gpu_index);
 // How many workers keep a GPU busy, 2 to 8: while a view is read or written, or
 // the CPU looks for its planes, the GPU sweeps others. A thread works for each
 // and another waits for the GPU: num_threads is shared out among the GPUs.
-// Views are limited to about 32 megapixels together, with some 5 GB of memory.
-int WorkersPerGpu(int num_threads, int num_gpus, double megapixels_per_view);
+// Views are limited to about 32 megapixels together, with some 5 GB of memory,
+// and to less where half of the memory that the program may use is less.
+int WorkersPerGpu(const MachineLimits& limits, int num_gpus,
+                  double megapixels_per_view);
 
 // gpu_index: of all GPUs each has WorkersPerGpu(number of those that can be
 // used); for each that is named there is one, so that a GPU may be named
-// several times. Without any GPU that can be used the CPU is. try_device: says
+// several times. Without any GPU that can be used the CPU is. limits: what the
+// program may use. try_device: says
 // what is wrong with a GPU, or nothing (device_trial.h). Throws Failure if a
 // GPU is named that cannot be used.
 Workers ChooseWorkers(bool use_gpu, const std::string& gpu_index,
                       const DeviceList& list,
                       const std::function<std::string(int)>& try_device,
-                      int num_threads, double megapixels_per_view);
+                      const MachineLimits& limits, double megapixels_per_view);
 
 }  // namespace tapa
 

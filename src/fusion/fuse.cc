@@ -63,7 +63,7 @@ class Fusion {
       if (control_.view_done) {
         control_.view_done(fused);
       }
-      cloud->views.push_back(std::move(fused));
+      cloud->Add(std::move(fused));
     }
     return true;
   }

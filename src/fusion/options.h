@@ -65,7 +65,8 @@ void VisitFusionOptions(Options* options, const Visitor& visit) {
          "points with it",
          Range::From(1, 64));
   option("agreement_cache_size", &o.cache_size,
-         "Gigabytes of maps to keep in memory; others are read when needed",
+         "Gigabytes of maps to keep in memory, and of points; other maps are "
+         "read when needed, other points are kept in a file",
          Range::Positive());
 }
 

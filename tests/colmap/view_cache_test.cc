@@ -23,6 +23,7 @@ TEST(ViewCache, KeepsTheLastUsedWithinItsSize) {
   EXPECT_EQ(reads, (std::vector<int>{1, 2, 3}));
   cache.Get(2);
   EXPECT_EQ(reads, (std::vector<int>{1, 2, 3, 2}));
+  EXPECT_EQ(cache.Use().Describe("maps"), "33 % of 6 maps");
 }
 
 TEST(ViewCache, MapsOutliveIt) {

@@ -15,8 +15,16 @@ DeviceList TwoGpus() {
 
 std::string NothingIsWrong(int) { return ""; }
 
+MachineLimits Limits(int num_cpus, double memory_bytes = 1e12) {
+  MachineLimits limits;
+  limits.num_cpus = num_cpus;
+  limits.memory_bytes = memory_bytes;
+  return limits;
+}
+
 Workers Choose(const std::string& gpu_index) {
-  return ChooseWorkers(true, gpu_index, TwoGpus(), NothingIsWrong, 8, 1);
+  return ChooseWorkers(true, gpu_index, TwoGpus(), NothingIsWrong, Limits(8),
+                       1);
 }
 
 TEST(Workers, AreTheGpusOfTheList) {
@@ -31,24 +39,30 @@ TEST(Workers, AreTheGpusOfTheList) {
 }
 
 TEST(Workers, AreAsManyAsThreadsAndMemoryAreFor) {
-  EXPECT_EQ(WorkersPerGpu(2, 1, 1), 2);
-  EXPECT_EQ(WorkersPerGpu(8, 1, 1), 4);
-  EXPECT_EQ(WorkersPerGpu(8, 2, 1), 2);
-  EXPECT_EQ(WorkersPerGpu(64, 1, 1), 8);
-  EXPECT_EQ(WorkersPerGpu(64, 1, 6), 5);
-  EXPECT_EQ(WorkersPerGpu(64, 1, 24), 2);
-  EXPECT_EQ(WorkersPerGpu(64, 1, 1e-9), 8);
+  EXPECT_EQ(WorkersPerGpu(Limits(2), 1, 1), 2);
+  EXPECT_EQ(WorkersPerGpu(Limits(8), 1, 1), 4);
+  EXPECT_EQ(WorkersPerGpu(Limits(8), 2, 1), 2);
+  EXPECT_EQ(WorkersPerGpu(Limits(64), 1, 1), 8);
+  EXPECT_EQ(WorkersPerGpu(Limits(64), 1, 6), 5);
+  EXPECT_EQ(WorkersPerGpu(Limits(64), 1, 24), 2);
+  EXPECT_EQ(WorkersPerGpu(Limits(64), 1, 1e-9), 8);
+  // Half of the memory is for 5 or for 2 views of 6 megapixels.
+  EXPECT_EQ(WorkersPerGpu(Limits(64, 10.1e9), 1, 6), 5);
+  EXPECT_EQ(WorkersPerGpu(Limits(64, 6e9), 1, 6), 3);
+  EXPECT_EQ(WorkersPerGpu(Limits(64, 12e9), 2, 6), 3);
+  EXPECT_EQ(WorkersPerGpu(Limits(64, 1e9), 1, 6), 2);
 }
 
 TEST(Workers, AreTheCpuWhereThereIsNoGpuOrNoneIsWanted) {
   DeviceList none;
   none.why_none = "there is no driver";
-  const Workers workers = ChooseWorkers(true, "3", none, NothingIsWrong, 8, 1);
+  const Workers workers =
+      ChooseWorkers(true, "3", none, NothingIsWrong, Limits(8), 1);
   EXPECT_EQ(workers.devices, (std::vector<int>{kCpu}));
   EXPECT_EQ(workers.message, "Computing on the CPU, as there is no driver.");
 
   const Workers unwanted =
-      ChooseWorkers(false, "0", TwoGpus(), NothingIsWrong, 8, 1);
+      ChooseWorkers(false, "0", TwoGpus(), NothingIsWrong, Limits(8), 1);
   EXPECT_EQ(unwanted.devices, (std::vector<int>{kCpu}));
   EXPECT_EQ(unwanted.message, "");
 }
@@ -59,18 +73,20 @@ TEST(Workers, AreThoseThatComputeWhatTheyShould) {
     tried.push_back(device);
     return device == 0 ? "it is broken" : "";
   };
-  EXPECT_EQ(ChooseWorkers(true, "-1", TwoGpus(), try_device, 8, 1).devices,
-            (std::vector<int>{2, 2, 2, 2}));
+  EXPECT_EQ(
+      ChooseWorkers(true, "-1", TwoGpus(), try_device, Limits(8), 1).devices,
+      (std::vector<int>{2, 2, 2, 2}));
   EXPECT_EQ(tried, (std::vector<int>{0, 2}));
   // Once each, and only those that are asked for.
   tried.clear();
-  ChooseWorkers(true, "2,2", TwoGpus(), try_device, 8, 1);
+  ChooseWorkers(true, "2,2", TwoGpus(), try_device, Limits(8), 1);
   EXPECT_EQ(tried, (std::vector<int>{2}));
-  EXPECT_THROW(ChooseWorkers(true, "2,0", TwoGpus(), try_device, 8, 1),
+  EXPECT_THROW(ChooseWorkers(true, "2,0", TwoGpus(), try_device, Limits(8), 1),
                Failure);
 
   const auto all_broken = [](int) { return std::string("it is broken"); };
-  const Workers none = ChooseWorkers(true, "-1", TwoGpus(), all_broken, 8, 1);
+  const Workers none =
+      ChooseWorkers(true, "-1", TwoGpus(), all_broken, Limits(8), 1);
   EXPECT_EQ(none.devices, (std::vector<int>{kCpu}));
   EXPECT_NE(none.message.find("GPU 0 (Fast) cannot be used: it is broken"),
             std::string::npos);

@@ -16,7 +16,8 @@ namespace {
 std::vector<FusedPoint> AllPoints(const FusedCloud& cloud) {
   std::vector<FusedPoint> points;
   for (const auto& view : cloud.views) {
-    points.insert(points.end(), view.points.begin(), view.points.end());
+    view.VisitPoints(
+        [&points](const FusedPoint& point) { points.push_back(point); });
   }
   return points;
 }

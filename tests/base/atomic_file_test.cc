@@ -1,0 +1,45 @@
+#include "src/base/atomic_file.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+namespace tapa {
+namespace {
+
+TEST(RemoveStaleTemporaries, LeavesWhatIsBeingWritten) {
+  namespace fs = std::filesystem;
+  const fs::path folder = testing::TempDir() + "/stale_temporaries";
+  fs::remove_all(folder);
+  fs::create_directories(folder);
+  char host[256] = "";
+  gethostname(host, sizeof(host) - 1);
+  const auto write = [&](const std::string& name, int hours_ago) {
+    std::ofstream(folder / name) << "part of a map";
+    fs::last_write_time(folder / name, fs::file_time_type::clock::now() -
+                                           std::chrono::hours(hours_ago));
+  };
+  const std::string here = std::string("map.part-") + host + "-";
+  // No process has such a number.
+  const std::string of_dead_process = here + "999999999-0";
+  const std::string of_this_process = here + std::to_string(getpid()) + "-0";
+  write(of_dead_process, 0);
+  write(of_this_process, 48);
+  write("map.part-elsewhere-7-0", 1);
+  write("map.part-elsewhere-8-0", 48);
+  write("map", 48);
+  RemoveStaleTemporaries(folder);
+  EXPECT_FALSE(fs::exists(folder / of_dead_process));
+  EXPECT_TRUE(fs::exists(folder / of_this_process));
+  EXPECT_TRUE(fs::exists(folder / "map.part-elsewhere-7-0"));
+  EXPECT_FALSE(fs::exists(folder / "map.part-elsewhere-8-0"));
+  EXPECT_TRUE(fs::exists(folder / "map"));
+  fs::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace tapa
