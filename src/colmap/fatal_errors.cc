@@ -106,6 +106,15 @@ void PrintError(const std::string& text) {
   has_failed = true;
 }
 
+void EndForDatabase(const char* error) {
+  LOG(FATAL) << "The database of features and matches cannot be read or "
+                "written: "
+             << error
+             << "; see to it that there is room, and that no other program "
+                "uses it, then run the same command again to go on.";
+  std::abort();  // LOG does not return.
+}
+
 int RunCommand(const std::string& name,
                const std::function<int(int, char**)>& command, int argc,
                char** argv) {

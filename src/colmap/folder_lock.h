@@ -1,7 +1,10 @@
 #ifndef TAPA_SRC_COLMAP_FOLDER_LOCK_H_
 #define TAPA_SRC_COLMAP_FOLDER_LOCK_H_
 
+#include <memory>
 #include <string>
+
+// This header is included by COLMAP's own sources.
 
 namespace tapa {
 
@@ -12,8 +15,12 @@ namespace tapa {
 // has none.
 class FolderLock {
  public:
+  // Those who only read share a folder: fusions with each other, not with
+  // stereo, whose maps are not complete.
+  enum class Use { kChange, kRead };
+
   // Throws Failure if another has it.
-  explicit FolderLock(const std::string& folder);
+  explicit FolderLock(const std::string& folder, Use use = Use::kChange);
   ~FolderLock();
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;
@@ -21,6 +28,10 @@ class FolderLock {
  private:
   const int file_;
 };
+
+// The same for changes, to be held by COLMAP's own code. Prints an error and
+// returns nullptr in place of a Failure.
+std::shared_ptr<const FolderLock> LockFolder(const std::string& folder);
 
 }  // namespace tapa
 

@@ -3,11 +3,14 @@
 #include <FreeImage.h>
 
 #include <filesystem>
+#include <memory>
 #include <system_error>
 
+#include "src/base/atomic_file.h"
 #include "src/base/failure.h"
 #include "src/colmap/fatal_errors.h"
 #include "src/colmap/progress.h"
+#include "src/colmap/text_files.h"
 #include "src/colmap/views.h"
 #include "util/misc.h"
 
@@ -21,6 +24,15 @@ bool IsSame(const std::string& path, const std::string& other) {
 
 void WarnOfPhoto(const Failure& error) {
   PrintWarning(std::string(error.what()) + "; it is left out");
+}
+
+// The photograph may be whole where the file system says that it cannot read
+// it: then it is not left out for good. Throws Failure.
+void CheckReadable(const std::string& path) {
+  std::error_code ignored;
+  if (std::filesystem::is_regular_file(path, ignored)) {
+    ReadWholeFile(path);
+  }
 }
 
 }  // namespace
@@ -46,6 +58,7 @@ bool HasSizeOf(const colmap::Camera& camera, const std::string& path) {
           ? nullptr
           : FreeImage_Load(format, path.c_str(), FIF_LOAD_NOPIXELS);
   if (header == nullptr) {
+    CheckReadable(path);
     PrintWarning("The image " + path + " cannot be read; it is left out");
     return false;
   }
@@ -68,10 +81,31 @@ bool ReadPhotoOf(const colmap::Camera& camera, const std::string& path,
         ReadBitmap(path, /* in_color */ true, static_cast<int>(camera.Width()),
                    static_cast<int>(camera.Height()));
   } catch (const Failure& error) {
+    CheckReadable(path);
     WarnOfPhoto(error);
     return false;
   }
   return true;
+}
+
+void WritePhoto(const colmap::Bitmap& bitmap, const std::string& path) {
+  FREE_IMAGE_FORMAT format = FreeImage_GetFIFFromFilename(path.c_str());
+  format = format == FIF_UNKNOWN ? FIF_PNG : format;
+  // As COLMAP does. The library does not look at what becomes of a file's end.
+  const int flags = format == FIF_JPEG ? JPEG_QUALITYSUPERB : 0;
+  const std::unique_ptr<FIMEMORY, decltype(&FreeImage_CloseMemory)> memory(
+      FreeImage_OpenMemory(), &FreeImage_CloseMemory);
+  BYTE* data = nullptr;
+  DWORD size = 0;
+  // It asks for a picture that it may change, and does not.
+  if (!FreeImage_SaveToMemory(format, const_cast<FIBITMAP*>(bitmap.Data()),
+                              memory.get(), flags) ||
+      !FreeImage_AcquireMemory(memory.get(), &data, &size)) {
+    throw Failure("The image " + path + " cannot be written in its format");
+  }
+  AtomicFile file(path);
+  file.Write(data, size);
+  file.Commit();
 }
 
 void RemoveOutput(const std::string& input_path,

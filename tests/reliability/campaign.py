@@ -22,24 +22,22 @@ SCENARIOS = {"kills": (kills, 40), "io_errors": (io_errors, 12), "disks": (disks
              "memory": (memory, 8), "two_runs": (two_runs, 4), "clocks": (clocks, 3)}
 
 
-def run(names, chosen_programs, counts, seed, folder):
-    """Returns a Report by scenario; counts: by scenario."""
+def run(counts, chosen_programs, seed, folder):
+    """Returns a Report by scenario; counts: by scenario and name of the program."""
     for program in chosen_programs:
         program.measure(folder)
     reports = {}
-    for name in names:
+    for name, count_of in counts.items():
         begin = time.monotonic()
-        reports[name] = trials.Report()
+        report = reports[name] = trials.Report()
         for program in chosen_programs:
-            rng = random.Random(f"{seed} {name} {program.name}")
-            SCENARIOS[name][0].run(program, counts[name], rng, reports[name])
-        report = reports[name]
+            if program.name in count_of:
+                rng = random.Random(f"{seed} {name} {program.name}")
+                SCENARIOS[name][0].run(program, count_of[program.name], rng, report)
         print(f"{SCENARIOS[name][0].TITLE}: {report.num_trials} times, "
               f"{report.num_ended} of them cut off or refused, "
               f"{len(report.faults)} faults, {time.monotonic() - begin:.0f} s",
               flush=True)
-        for fault in report.faults:
-            print("  " + fault, flush=True)
     return reports
 
 
@@ -68,14 +66,14 @@ def main(words):
     arguments = parser.parse_args(words)
     if not os.path.exists(programs.tiny.COLMAP):
         sys.exit(f"ERROR: there is no {programs.tiny.COLMAP}; scripts/build.sh makes it")
-    counts = {name: max(1, round(arguments.share * count))
-              for name, (_, count) in SCENARIOS.items()}
+    counts = {name: {program: max(1, round(arguments.share * SCENARIOS[name][1]))
+                     for program in arguments.programs}
+              for name in arguments.scenarios}
     folder = tempfile.mkdtemp(prefix="tapa-reliability-")
     try:
-        reports = run(arguments.scenarios,
-                      [program for program in programs.all_programs()
-                       if program.name in arguments.programs],
-                      counts, arguments.seed, folder)
+        reports = run(counts, [program for program in programs.all_programs()
+                               if program.name in arguments.programs],
+                      arguments.seed, folder)
     finally:
         shutil.rmtree(folder, ignore_errors=True)
     return int(any(report.faults for report in reports.values()))

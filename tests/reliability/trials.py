@@ -1,5 +1,7 @@
 """A disturbed run, the run after it, and what is wrong with either."""
 
+import re
+
 import programs
 import snapshots
 
@@ -13,7 +15,9 @@ class Report:
         self.faults = []
 
     def add(self, what, faults):
-        self.faults += [f"{what}: {fault}" for fault in faults]
+        for fault in faults:
+            self.faults.append(f"{what}: {fault}")
+            print("FAULT: " + self.faults[-1], flush=True)
 
 
 def errors_of(output):
@@ -39,8 +43,8 @@ def faults_of_ending(status, output, is_told=None):
 
 
 def names_a_file(line):
-    """Whether an error says where it was; files are named with their folder."""
-    return "/" in line
+    """Whether an error says where it was; there is one database only."""
+    return re.search(r"/|\.(bin|cfg|ply|png|txt|vis)\b|database", line) is not None
 
 
 def finish(program, folder, faults):
