@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
-#include <ostream>
+#include <fstream>
 #include <system_error>
 
 #include "src/base/failure.h"
@@ -73,8 +73,9 @@ void CommitPart(const std::string& path) {
   }
 }
 
-void CheckWritten(const std::string& path, std::ostream* file) {
-  if (!file->flush()) {
+void CheckWritten(const std::string& path, std::ofstream* file) {
+  file->close();
+  if (!*file) {
     throw Failure("Cannot write " + path +
                   "; see to it that there is room and that the folder can be "
                   "written, then run the same command again to go on");

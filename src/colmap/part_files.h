@@ -17,8 +17,8 @@ std::string MakePart(const std::string& path);
 // Gives it that path, in place of what is there. Throws Failure.
 void CommitPart(const std::string& path);
 
-// Throws Failure unless all that was written to a file has arrived there.
-void CheckWritten(const std::string& path, std::ostream* file);
+// Closes a file. Throws Failure unless all that was written has arrived there.
+void CheckWritten(const std::string& path, std::ofstream* file);
 
 // Lets write make a PLY file, with the path that it is given, and renames it to
 // its own. Prints an error, and returns false, if write fails or the file is

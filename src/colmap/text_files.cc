@@ -33,7 +33,7 @@ bool TextLines::Next(std::string* line) {
 std::string ReadWholeFile(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) {
-    throw Failure(path + " cannot be opened: " + std::strerror(errno));
+    throw ReadFailure(path + " cannot be opened: " + std::strerror(errno));
   }
   std::string content;
   char buffer[4096];
@@ -42,7 +42,7 @@ std::string ReadWholeFile(const std::string& path) {
     content.append(buffer, static_cast<size_t>(file.gcount()));
   } while (file);
   if (file.bad()) {
-    throw Failure(path + " cannot be read: " + std::strerror(errno));
+    throw ReadFailure(path + " cannot be read: " + std::strerror(errno));
   }
   return content;
 }

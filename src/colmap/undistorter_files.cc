@@ -9,8 +9,8 @@
 #include "src/base/atomic_file.h"
 #include "src/base/failure.h"
 #include "src/colmap/fatal_errors.h"
+#include "src/colmap/photo_formats.h"
 #include "src/colmap/progress.h"
-#include "src/colmap/text_files.h"
 #include "src/colmap/views.h"
 #include "util/misc.h"
 
@@ -24,15 +24,6 @@ bool IsSame(const std::string& path, const std::string& other) {
 
 void WarnOfPhoto(const Failure& error) {
   PrintWarning(std::string(error.what()) + "; it is left out");
-}
-
-// The photograph may be whole where the file system says that it cannot read
-// it: then it is not left out for good. Throws Failure.
-void CheckReadable(const std::string& path) {
-  std::error_code ignored;
-  if (std::filesystem::is_regular_file(path, ignored)) {
-    ReadWholeFile(path);
-  }
 }
 
 }  // namespace
@@ -52,13 +43,8 @@ void CheckUndistorterPaths(const std::string& image_path,
 }
 
 bool HasSizeOf(const colmap::Camera& camera, const std::string& path) {
-  const FREE_IMAGE_FORMAT format = FreeImage_GetFileType(path.c_str());
-  FIBITMAP* header =
-      format == FIF_UNKNOWN
-          ? nullptr
-          : FreeImage_Load(format, path.c_str(), FIF_LOAD_NOPIXELS);
+  FIBITMAP* header = LoadPicture(path, FIF_LOAD_NOPIXELS);
   if (header == nullptr) {
-    CheckReadable(path);
     PrintWarning("The image " + path + " cannot be read; it is left out");
     return false;
   }
@@ -80,8 +66,9 @@ bool ReadPhotoOf(const colmap::Camera& camera, const std::string& path,
     *bitmap =
         ReadBitmap(path, /* in_color */ true, static_cast<int>(camera.Width()),
                    static_cast<int>(camera.Height()));
+  } catch (const ReadFailure&) {
+    throw;
   } catch (const Failure& error) {
-    CheckReadable(path);
     WarnOfPhoto(error);
     return false;
   }

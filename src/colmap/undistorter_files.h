@@ -24,8 +24,7 @@ void CheckUndistorterPaths(const std::string& image_path,
 bool HasSizeOf(const colmap::Camera& camera, const std::string& path);
 
 // Reads a photograph. Prints a warning, and returns false, if it is damaged or
-// does not have the size of its camera. Throws Failure if the file system
-// fails.
+// does not have the size of its camera. Throws ReadFailure.
 bool ReadPhotoOf(const colmap::Camera& camera, const std::string& path,
                  colmap::Bitmap* bitmap);
 

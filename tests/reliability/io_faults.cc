@@ -12,6 +12,7 @@
 
 #include <dlfcn.h>
 #include <fcntl.h>
+#include <stdio_ext.h>
 #include <sys/stat.h>
 #include <sys/uio.h>
 #include <unistd.h>
@@ -219,9 +220,8 @@ int fclose(FILE* file) {
   const int number = fileno(file);
   const bool fails = !IsRead(fcntl(number, F_GETFL)) && ChangeFails(number);
   const int error = errno;
-  struct stat status;
-  if (fails && fflush(file) == 0 && fstat(number, &status) == 0) {
-    (void)!ftruncate(number, status.st_size / 2);
+  if (fails) {
+    __fpurge(file);
   }
   const int result = next(file);
   errno = error;

@@ -18,8 +18,8 @@ def _run(command, folder, limit):
 
 
 def _least_limit(works, low, high):
-    """Where what works begins, to 2 megabytes."""
-    while high - low > 2 * MEGABYTE:
+    """Where what works begins, to 16 megabytes."""
+    while high - low > 16 * MEGABYTE:
         middle = (low + high) // 2
         low, high = (low, middle) if works(middle) else (middle, high)
     return high
@@ -34,10 +34,10 @@ def run(program, number, rng, report):
     help_command = [program.command[0], program.command[1], "--help"]
     least = _least_limit(
         lambda limit: _run(help_command, program.origin, limit)[0] == 0,
-        LEAST, 4096 * MEGABYTE)
+        LEAST, 2048 * MEGABYTE)
     enough = _least_limit(
         lambda limit: _run(program.command, program.fresh(), limit)[0] == 0,
-        least, 8192 * MEGABYTE)
+        least, 4096 * MEGABYTE)
     for limit in io_errors.spread(least + rng.randint(0, MEGABYTE), enough, number):
         folder = program.fresh()
         status, output = _run(program.command, folder, limit)

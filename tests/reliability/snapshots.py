@@ -36,8 +36,14 @@ def _is_whole_map(content):
 
 
 def _is_whole_database(path):
-    with sqlite3.connect(path) as database:
+    # Immutable: without files of its own beside it.
+    database = sqlite3.connect(f"file:{path}?immutable=1", uri=True)
+    try:
         return database.execute("PRAGMA integrity_check").fetchone() == ("ok",)
+    except sqlite3.DatabaseError:
+        return False
+    finally:
+        database.close()
 
 
 def faults_at_names(folder, start, expected):
