@@ -121,7 +121,9 @@ def all_programs():
         Program("stereo", stereo_command(), _prepare_stereo),
         Program("tapa", stereo_command(tapa=1), _prepare_stereo),
         Program("fusion", fusion_command(), _prepare_fusion),
-        Program("colmap_fusion", fusion_command(agreement=0, min_num_pixels=3),
+        # Its points depend on which of its threads is faster.
+        Program("colmap_fusion",
+                fusion_command(agreement=0, min_num_pixels=3, num_threads=1),
                 _prepare_fusion),
         Program("automatic", automatic_command(), _prepare_automatic),
     ]
