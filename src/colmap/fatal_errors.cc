@@ -7,6 +7,7 @@
 #include <exception>
 #include <iostream>
 #include <new>
+#include <system_error>
 
 #include "src/colmap/guest.h"
 #include "src/colmap/step_bar.h"
@@ -42,6 +43,12 @@ void PrintException(const std::exception_ptr& exception) {
     std::rethrow_exception(exception);
   } catch (const std::bad_alloc&) {
     PrintError("There is not enough memory");
+  } catch (const std::system_error& error) {
+    // Of threads it says no more than "Resource temporarily unavailable".
+    PrintError(error.code() == std::errc::resource_unavailable_try_again
+                   ? "No further thread can be started: there is not enough "
+                     "memory, or there are too many processes"
+                   : error.what());
   } catch (const std::exception& error) {
     PrintError(error.what());
   } catch (...) {

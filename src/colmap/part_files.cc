@@ -91,6 +91,7 @@ bool WriteWhole(const std::string& path,
   std::error_code error;
   std::filesystem::remove(part_path, error);
   const ExitGuard guard(path);
+  const FatalErrors fatal_errors(path + " could not be made");
   std::string why;
   try {
     if (write(part_path.string()) && IsWholePly(part_path.string())) {
