@@ -2,6 +2,7 @@
 
 #include <dirent.h>
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -9,9 +10,7 @@
 #include <atomic>
 #include <cerrno>
 #include <climits>
-#include <csignal>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <ctime>
 #include <filesystem>
@@ -21,47 +20,110 @@
 namespace tapa {
 namespace {
 
-constexpr char kPart[] = ".part-";
+// What a temporary name has behind the final one, before the name of the
+// machine.
+constexpr char kMark[] = ".part-";
 
-// What a temporary name has between the final one and the number of the
-// process.
-std::string TemporaryMark() {
+std::string HostName() {
   char host[HOST_NAME_MAX + 1] = "";
   gethostname(host, sizeof(host) - 1);
-  return std::string(kPart) + host + "-";
+  return host;
 }
 
-// Whether nobody has written to a file for so long that nobody will.
-bool IsForgotten(const std::string& path) {
-  constexpr time_t kDay = 24 * 3600;
-  struct stat file;
-  return stat(path.c_str(), &file) == 0 && time(nullptr) - file.st_mtime > kDay;
+// A long name is cut, so that there is room for the mark.
+std::string CutName(const std::string& name, size_t room) {
+  return name.substr(0, NAME_MAX - std::min<size_t>(room, NAME_MAX));
 }
 
-// Beside the file, and unlike any other. A long name is cut, so that there is
-// room for the mark.
+// Beside the file, and unlike any other.
 std::string TemporaryPath(const std::string& path) {
   static std::atomic<int> counter(0);
-  const std::string end = TemporaryMark() + std::to_string(getpid()) + "-" +
-                          std::to_string(counter++);
+  const std::string end = kMark + HostName() + "-" + std::to_string(getpid()) +
+                          "-" + std::to_string(counter++);
   const size_t name = path.rfind('/') + 1;
-  return path.substr(0, name) +
-         path.substr(name, NAME_MAX - std::min<size_t>(end.size(), NAME_MAX)) +
-         end;
+  return path.substr(0, name) + CutName(path.substr(name), end.size()) + end;
 }
 
-// Some mounts have no fsync: what they keep is theirs to see to.
+// Makes the file and locks it, so that others see that it is being written. One
+// of them may have removed it before it was locked.
+int OpenLocked(const std::string& path) {
+  while (true) {
+    const int file =
+        open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    struct stat status = {};
+    if (file < 0 || flock(file, LOCK_EX | LOCK_NB) != 0 ||
+        fstat(file, &status) != 0 || status.st_nlink > 0) {
+      return file;
+    }
+    close(file);
+  }
+}
+
+// Whether a file with a temporary name is nobody's any more: the system unlocks
+// it when its process ends. Some shared file systems know locks of one machine
+// only, so that what other machines have written has to be old as well.
+bool IsStale(const std::string& path, bool is_of_this_host) {
+  constexpr time_t kOld = 24 * 3600;
+  const int file = open(path.c_str(), O_WRONLY | O_CLOEXEC);
+  if (file < 0) {
+    return false;
+  }
+  struct stat status = {};
+  const bool is_stale =
+      flock(file, LOCK_EX | LOCK_NB) == 0 && fstat(file, &status) == 0 &&
+      (is_of_this_host || std::time(nullptr) - status.st_mtime > kOld);
+  close(file);
+  return is_stale;
+}
+
+// Removes the unfinished files of a folder that nobody writes any more, of all
+// names that begin with this.
+void RemoveStale(const std::string& folder, const std::string& begin) {
+  DIR* dir = opendir(folder.c_str());
+  if (dir == nullptr) {
+    return;
+  }
+  const std::string own_mark = kMark + HostName() + "-";
+  while (const dirent* entry = readdir(dir)) {
+    const std::string name = entry->d_name;
+    const size_t mark = name.rfind(kMark);
+    if (mark == std::string::npos ||
+        name.compare(0, begin.size(), begin) != 0) {
+      continue;
+    }
+    const std::string path = folder + "/" + name;
+    if (IsStale(path, name.compare(mark, own_mark.size(), own_mark) == 0)) {
+      unlink(path.c_str());
+    }
+  }
+  closedir(dir);
+}
+
+// Of the file itself, from runs that were cut off.
+void RemoveStaleOf(const std::string& path) {
+  const size_t name = path.rfind('/') + 1;
+  constexpr size_t kRoom = 128;  // Enough for any mark.
+  RemoveStale(name == 0 ? "." : path.substr(0, name),
+              CutName(path.substr(name) + kMark, kRoom));
+}
+
+// Some mounts have no fsync; of them some tell when a file is closed what could
+// not be written. A copy of the descriptor is, so that the lock holds on.
 bool Synchronize(int file) {
-  return fsync(file) == 0 || errno == EINVAL || errno == ENOSYS ||
-         errno == ENOTSUP;
+  if (fsync(file) != 0 && errno != EINVAL && errno != ENOSYS &&
+      errno != ENOTSUP) {
+    return false;
+  }
+  const int copy = dup(file);
+  return copy >= 0 && close(copy) == 0;
 }
 
 }  // namespace
 
 AtomicFile::AtomicFile(const std::string& path)
     : path_(path), temporary_path_(TemporaryPath(path)) {
-  file_ = open(temporary_path_.c_str(),
-               O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  RemoveStaleOf(path);
+  file_ = OpenLocked(temporary_path_);
   if (file_ < 0) {
     Fail();
   }
@@ -89,18 +151,20 @@ void AtomicFile::Write(const void* data, size_t size) {
   }
 }
 
+void AtomicFile::Finish() {
+  if (!is_finished_ && !Synchronize(file_)) {
+    Fail();
+  }
+  is_finished_ = true;
+}
+
 void AtomicFile::Commit() {
-  if (!Synchronize(file_)) {
+  Finish();
+  if (rename(temporary_path_.c_str(), path_.c_str()) != 0) {
     Fail();
   }
-  const int file = file_;
+  close(file_);
   file_ = -1;
-  if (close(file) != 0 || rename(temporary_path_.c_str(), path_.c_str()) != 0) {
-    const int error = errno;
-    unlink(temporary_path_.c_str());
-    errno = error;
-    Fail();
-  }
 }
 
 void AtomicFile::Fail() {
@@ -116,27 +180,7 @@ void AtomicFile::Fail() {
 }
 
 void RemoveStaleTemporaries(const std::string& folder) {
-  DIR* dir = opendir(folder.c_str());
-  if (dir == nullptr) {
-    return;
-  }
-  const std::string mark = TemporaryMark();
-  while (const dirent* entry = readdir(dir)) {
-    const std::string name = entry->d_name;
-    const std::string path = folder + "/" + name;
-    const size_t position = name.rfind(mark);
-    if (position == std::string::npos) {
-      if (name.find(kPart) != std::string::npos && IsForgotten(path)) {
-        unlink(path.c_str());
-      }
-      continue;
-    }
-    const long process = std::atol(name.c_str() + position + mark.size());
-    if (process > 0 && kill(process, 0) != 0 && errno == ESRCH) {
-      unlink(path.c_str());
-    }
-  }
-  closedir(dir);
+  RemoveStale(folder, "");
 }
 
 void PrepareFolder(const std::string& path, const std::string& contents) {

@@ -6,8 +6,9 @@
 
 namespace tapa {
 
-// Writes a file beside its final name and renames it when it is complete. The
-// temporary name says which process of which machine writes it.
+// Writes a file beside its final name and renames it when it is complete. Until
+// then it is locked, so that what a process left that was killed is known, and
+// removed by the next one that writes the same file.
 class AtomicFile {
  public:
   // Throws Failure if the file cannot be made.
@@ -21,8 +22,11 @@ class AtomicFile {
   // Appends bytes. Throws Failure if they cannot be written.
   void Write(const void* data, size_t size);
 
-  // Gives the file its final name once its content is on the disk. Throws
-  // Failure if that cannot be done.
+  // Sees to it that the content is on the disk, so that of several files none
+  // gets its name before all are complete. Throws Failure.
+  void Finish();
+
+  // Finishes the file and gives it its final name. Throws Failure.
   void Commit();
 
  private:
@@ -31,10 +35,10 @@ class AtomicFile {
   const std::string path_;
   const std::string temporary_path_;
   int file_ = -1;
+  bool is_finished_ = false;
 };
 
-// Removes from a folder the unfinished files of processes of this machine that
-// do not live any more, and those of other machines that are a day old.
+// Removes from a folder the unfinished files that nobody writes any more.
 void RemoveStaleTemporaries(const std::string& folder);
 
 // Makes a folder if it is not there, removes such files from it, and throws

@@ -1,5 +1,7 @@
 #include "src/base/map_files.h"
 
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 
@@ -43,6 +45,10 @@ std::string SizeText(int width, int height, int channels) {
   throw Failure(path + " " + what);
 }
 
+[[noreturn]] void FailToRead(const std::string& path) {
+  Fail(path, std::string("cannot be read: ") + std::strerror(errno));
+}
+
 // Opens a valid file of any size.
 OpenMap Open(const std::string& path, MapKind kind) {
   OpenMap map;
@@ -54,6 +60,9 @@ OpenMap Open(const std::string& path, MapKind kind) {
   map.width = ReadHeaderNumber(&map.file);
   map.height = ReadHeaderNumber(&map.file);
   const int found_channels = ReadHeaderNumber(&map.file);
+  if (map.file.bad()) {
+    FailToRead(path);
+  }
   if (map.width == 0 || map.height == 0 || found_channels == 0) {
     Fail(path, "is not a COLMAP depth or normal map");
   }
@@ -86,7 +95,7 @@ void ReadValues(const std::string& path, OpenMap* map, float* values,
                 size_t count) {
   if (!map->file.read(reinterpret_cast<char*>(values),
                       static_cast<std::streamsize>(count * sizeof(float)))) {
-    throw Failure("Cannot read " + path);
+    FailToRead(path);
   }
 }
 

@@ -7,6 +7,7 @@
 #include <exception>
 #include <iostream>
 #include <new>
+#include <system_error>
 
 #include "src/colmap/guest.h"
 #include "src/colmap/step_bar.h"
@@ -42,6 +43,12 @@ void PrintException(const std::exception_ptr& exception) {
     std::rethrow_exception(exception);
   } catch (const std::bad_alloc&) {
     PrintError("There is not enough memory");
+  } catch (const std::system_error& error) {
+    // Of threads it says no more than "Resource temporarily unavailable".
+    PrintError(error.code() == std::errc::resource_unavailable_try_again
+                   ? "No further thread can be started: there is not enough "
+                     "memory, or there are too many processes"
+                   : error.what());
   } catch (const std::exception& error) {
     PrintError(error.what());
   } catch (...) {
@@ -104,6 +111,15 @@ void FatalErrors::send(google::LogSeverity severity, const char*, const char*,
 void PrintError(const std::string& text) {
   Report(text + ".");
   has_failed = true;
+}
+
+void EndForDatabase(const char* error) {
+  LOG(FATAL) << "The database of features and matches cannot be read or "
+                "written: "
+             << error
+             << "; see to it that there is room, and that no other program "
+                "uses it, then run the same command again to go on.";
+  std::abort();  // LOG does not return.
 }
 
 int RunCommand(const std::string& name,

@@ -41,6 +41,9 @@ class FatalErrors : public google::LogSink {
 // program, whose exit status will be 1.
 void PrintError(const std::string& text);
 
+// Ends the program for an error of the database of features and matches.
+[[noreturn]] void EndForDatabase(const char* error);
+
 // Runs a command of the program such that it never aborts: a failed check, and
 // an exception in any thread, become a line and exit status 1. On a terminal, a
 // bar shows how far it is (step_bar.h).

@@ -1,7 +1,10 @@
 #ifndef TAPA_SRC_COLMAP_FOLDER_LOCK_H_
 #define TAPA_SRC_COLMAP_FOLDER_LOCK_H_
 
+#include <memory>
 #include <string>
+
+// This header is included by COLMAP's own sources.
 
 namespace tapa {
 
@@ -12,14 +15,13 @@ namespace tapa {
 // has none.
 class FolderLock {
  public:
-  enum class With {
-    kNobody,
-    // Others that say so, too, such as on other machines.
-    kWorkers,
-  };
+  // Those who share a folder: fusions, which only read, and the workers of one
+  // run on several machines, which each write their own maps. A run of stereo
+  // has the folder alone.
+  enum class Use { kAlone, kShared };
 
   // Throws Failure if another has it.
-  FolderLock(const std::string& folder, With with);
+  explicit FolderLock(const std::string& folder, Use use = Use::kAlone);
   ~FolderLock();
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;
@@ -27,6 +29,10 @@ class FolderLock {
  private:
   const int file_;
 };
+
+// The same for changes, to be held by COLMAP's own code. Prints an error and
+// returns nullptr in place of a Failure.
+std::shared_ptr<const FolderLock> LockFolder(const std::string& folder);
 
 }  // namespace tapa
 

@@ -2,12 +2,8 @@
 
 #include <cstdint>
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
 #include <iostream>
-#include <map>
 #include <sstream>
-#include <system_error>
 
 #include "mvs/fusion.h"
 #include "src/base/atomic_file.h"
@@ -172,6 +168,8 @@ void WriteFiles(const std::string& path, const Points& points,
   }
   AtomicFile visibility_file(path + ".vis");
   WriteVisibility(points, &visibility_file);
+  file.Finish();
+  visibility_file.Finish();
   std::remove(path.c_str());
   visibility_file.Commit();
   file.Commit();
@@ -208,33 +206,6 @@ std::vector<colmap::PlyPoint> PlyPoints(const FusedCloud& cloud) {
   WeighedPoints{cloud}.VisitPoints(
       [&](const colmap::PlyPoint& point, float) { points.push_back(point); });
   return points;
-}
-
-bool HasWholePoints(const std::string& path) {
-  const std::map<std::string, uint64_t> sizes = {
-      {"float", 4}, {"double", 8}, {"uchar", 1}};
-  std::ifstream file(path, std::ios::binary);
-  uint64_t num_points = 0;
-  uint64_t point_size = 0;
-  std::string line;
-  while (std::getline(file, line) && line != "end_header") {
-    std::istringstream words(line);
-    std::string key;
-    std::string type;
-    words >> key >> type;
-    if (key == "element" && type == "vertex") {
-      words >> num_points;
-    } else if (key == "property" && sizes.count(type) > 0) {
-      point_size += sizes.at(type);
-    }
-  }
-  if (line != "end_header") {
-    return false;
-  }
-  const auto header_size = static_cast<uint64_t>(file.tellg());
-  std::error_code error;
-  const uint64_t size = std::filesystem::file_size(path, error);
-  return !error && size == header_size + num_points * point_size;
 }
 
 }  // namespace tapa

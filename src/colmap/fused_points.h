@@ -37,10 +37,6 @@ void WriteFusedPoints(const std::string& path,
 // The points without confidence and visibility, as COLMAP's rule makes them.
 std::vector<colmap::PlyPoint> PlyPoints(const FusedCloud& cloud);
 
-// Whether a file of points is there and is whole: of the length that its header
-// asks for.
-bool HasWholePoints(const std::string& path);
-
 }  // namespace tapa
 
 #endif  // TAPA_SRC_COLMAP_FUSED_POINTS_H_

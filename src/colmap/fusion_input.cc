@@ -195,9 +195,10 @@ std::vector<int> ViewsToFuse(const std::vector<SceneView>& views,
 std::vector<std::string> FusionImages(
     const colmap::mvs::StereoFusionOptions& options, const std::string& path,
     const std::string& format, const std::string& pmvs_option_name,
-    const std::string& input_type) {
+    const std::string& input_type, std::shared_ptr<const FolderLock>* lock) {
   std::vector<std::string> names;
   try {
+    *lock = std::make_shared<FolderLock>(path, FolderLock::Use::kShared);
     const WorkspaceLocation location =
         FusionLocation(path, format, pmvs_option_name);
     const std::vector<SceneView> views =

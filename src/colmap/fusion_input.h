@@ -8,6 +8,7 @@
 
 #include "mvs/fusion.h"
 #include "mvs/image.h"
+#include "src/colmap/folder_lock.h"
 #include "src/colmap/pass.h"
 #include "src/colmap/views.h"
 #include "src/colmap/workspace.h"
@@ -33,12 +34,12 @@ std::vector<int> ViewsToFuse(const std::vector<SceneView>& views,
                              const WorkspaceLocation& location, Pass pass,
                              const std::string& mask_path);
 
-// The names of the same for COLMAP's rule. Prints an error and returns nothing
-// in place of a Failure.
+// The names of the same for COLMAP's rule, which is to hold the lock as long as
+// it reads maps. Prints an error and returns nothing in place of a Failure.
 std::vector<std::string> FusionImages(
     const colmap::mvs::StereoFusionOptions& options, const std::string& path,
     const std::string& format, const std::string& pmvs_option_name,
-    const std::string& input_type);
+    const std::string& input_type, std::shared_ptr<const FolderLock>* lock);
 
 // Says that nothing came out of fusion, and what may help.
 void ReportNoPoints(const colmap::mvs::StereoFusionOptions& options);

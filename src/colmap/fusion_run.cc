@@ -8,6 +8,7 @@
 
 #include "mvs/fusion.h"
 #include "src/colmap/fatal_errors.h"
+#include "src/colmap/folder_lock.h"
 #include "src/colmap/fusion_input.h"
 #include "src/colmap/fusion_source.h"
 #include "src/colmap/interrupt.h"
@@ -121,6 +122,7 @@ int FuseWorkspace(const colmap::mvs::StereoFusionOptions& options,
   const auto stopped = [&] { return interrupt.Signal() != 0 || is_stopped(); };
   try {
     CheckFusionOptions(options.agreement);
+    const FolderLock lock(workspace_path, FolderLock::Use::kShared);
     FusionSource source(
         options,
         FusionLocation(workspace_path, workspace_format, pmvs_option_name),

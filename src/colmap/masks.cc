@@ -7,6 +7,7 @@
 #include "src/base/parallel.h"
 #include "src/colmap/part_files.h"
 #include "src/colmap/progress.h"
+#include "src/colmap/undistorter_files.h"
 #include "util/bitmap.h"
 #include "util/misc.h"
 
@@ -89,9 +90,7 @@ void UndistortMask(const std::string& path, const colmap::Camera& camera,
   }
   std::error_code ignored;  // Writing fails then.
   fs::create_directories(fs::path(output_path).parent_path(), ignored);
-  if (!mask.Write(output_path)) {
-    throw Failure("The mask " + output_path + " cannot be written");
-  }
+  WritePhoto(mask, output_path);
 }
 
 }  // namespace

@@ -128,7 +128,6 @@ std::optional<OptionValues> ReadOptionsRecord(const std::string& path) {
 }
 
 void WriteOptionsRecord(const std::string& path, const OptionValues& values) {
-  RemoveStaleTemporaries(colmap::GetParentDir(path));
   std::string text = kComment;
   for (const auto& [name, value] : values) {
     text += name + " = " + value + "\n";

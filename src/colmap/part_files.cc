@@ -1,16 +1,54 @@
 #include "src/colmap/part_files.h"
 
+#include <unistd.h>
+
+#include <cstdlib>
+#include <exception>
 #include <filesystem>
+#include <fstream>
 #include <system_error>
 
 #include "src/base/failure.h"
 #include "src/colmap/fatal_errors.h"
+#include "src/colmap/ply_files.h"
 #include "util/misc.h"
 
 namespace tapa {
 namespace {
 
 std::string PartPath(const std::string& path) { return path + ".part"; }
+
+// why: what is known of it.
+void PrintNotMade(const std::string& path, const std::string& why) {
+  PrintError(path + " could not be made" + why +
+             "; is there room, and can its folder and the current one, where "
+             "the mesher writes as well, be written");
+}
+
+// While one of these lives, the program cannot end as if nothing was wrong.
+class ExitGuard {
+ public:
+  explicit ExitGuard(const std::string& path) {
+    static const bool is_registered = std::atexit(&EndWithError) == 0;
+    static_cast<void>(is_registered);
+    path_ = path;
+  }
+  ~ExitGuard() { path_.clear(); }
+  ExitGuard(const ExitGuard&) = delete;
+  ExitGuard& operator=(const ExitGuard&) = delete;
+
+ private:
+  static void EndWithError() {
+    if (!path_.empty()) {
+      PrintNotMade(path_, "");
+      _exit(EXIT_FAILURE);
+    }
+  }
+
+  static std::string path_;
+};
+
+std::string ExitGuard::path_;
 
 }  // namespace
 
@@ -35,6 +73,15 @@ void CommitPart(const std::string& path) {
   }
 }
 
+void CheckWritten(const std::string& path, std::ofstream* file) {
+  file->close();
+  if (!*file) {
+    throw Failure("Cannot write " + path +
+                  "; see to it that there is room and that the folder can be "
+                  "written, then run the same command again to go on");
+  }
+}
+
 bool WriteWhole(const std::string& path,
                 const std::function<bool(const std::string&)>& write) {
   // Meshing adds the extension where it is missing.
@@ -43,13 +90,22 @@ bool WriteWhole(const std::string& path,
   part_path.replace_extension(PartPath("") + final_path.extension().string());
   std::error_code error;
   std::filesystem::remove(part_path, error);
-  if (write(part_path.string())) {
-    std::filesystem::rename(part_path, final_path, error);
-    if (!error) {
-      return true;
+  const ExitGuard guard(path);
+  const FatalErrors fatal_errors(path + " could not be made");
+  std::string why;
+  try {
+    if (write(part_path.string()) && IsWholePly(part_path.string())) {
+      std::filesystem::rename(part_path, final_path, error);
+      if (!error) {
+        return true;
+      }
+      why = ": " + error.message();
     }
+  } catch (const std::exception& exception) {
+    why = std::string(": ") + exception.what();
   }
-  PrintError(path + " could not be made");
+  std::filesystem::remove(part_path, error);
+  PrintNotMade(path, why);
   return false;
 }
 

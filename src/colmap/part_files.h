@@ -2,6 +2,7 @@
 #define TAPA_SRC_COLMAP_PART_FILES_H_
 
 #include <functional>
+#include <iosfwd>
 #include <string>
 
 // This header is included by COLMAP's own sources.
@@ -16,8 +17,13 @@ std::string MakePart(const std::string& path);
 // Gives it that path, in place of what is there. Throws Failure.
 void CommitPart(const std::string& path);
 
-// Lets write make a file, with the path that it is given, and renames it to its
-// own. Prints an error, and returns false, if write does or makes none.
+// Closes a file. Throws Failure unless all that was written has arrived there.
+void CheckWritten(const std::string& path, std::ofstream* file);
+
+// Lets write make a PLY file, with the path that it is given, and renames it to
+// its own. Prints an error, and returns false, if write fails or the file is
+// not whole. If write ends the program, that ends with an error, too: the
+// mesher takes every trouble for a success.
 bool WriteWhole(const std::string& path,
                 const std::function<bool(const std::string&)>& write);
 

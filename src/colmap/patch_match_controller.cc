@@ -63,8 +63,8 @@ void PatchMatchController::Run() {
   try {
     const tapa::FolderLock lock(workspace_path_,
                                 tapa::RunPart(options_).IsWorker()
-                                    ? tapa::FolderLock::With::kWorkers
-                                    : tapa::FolderLock::With::kNobody);
+                                    ? tapa::FolderLock::Use::kShared
+                                    : tapa::FolderLock::Use::kAlone);
     tapa::StereoPlan plan = tapa::MakeStereoPlan(options_, location);
     tapa::MachineLimits limits = tapa::FindMachineLimits();
     limits.num_cpus = tapa::EffectiveNumThreads(options_.num_threads);

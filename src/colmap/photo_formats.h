@@ -3,6 +3,8 @@
 
 #include <FreeImage.h>
 
+#include <string>
+
 // This header is included by COLMAP's own sources.
 
 namespace tapa {
@@ -11,6 +13,9 @@ namespace tapa {
 // reduced to these. Takes the bitmap over, and returns it if it is of another
 // kind; nothing if it cannot be converted.
 inline FIBITMAP* ReduceTo8Bits(FIBITMAP* bitmap) {
+  if (bitmap == nullptr) {
+    return nullptr;
+  }
   FIBITMAP* reduced = nullptr;
   switch (FreeImage_GetImageType(bitmap)) {
     case FIT_UINT16:
@@ -26,6 +31,11 @@ inline FIBITMAP* ReduceTo8Bits(FIBITMAP* bitmap) {
   FreeImage_Unload(bitmap);
   return reduced;
 }
+
+// Decodes a file. Returns nothing if it is no picture, or a damaged one. Throws
+// ReadFailure: a photograph that cannot be read is not to be left out, as those
+// are.
+FIBITMAP* LoadPicture(const std::string& path, int flags = 0);
 
 }  // namespace tapa
 

@@ -3,7 +3,10 @@
 #include <FreeImage.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <system_error>
 
@@ -49,6 +52,17 @@ void WriteContents(const std::string& path, const Contents& contents) {
   file.Commit();
 }
 
+// What cannot be read may be a photograph. Throws Failure.
+void CheckReadable(const fs::path& path) {
+  std::error_code ignored;
+  std::ifstream file(path, std::ios::binary);
+  if (fs::is_regular_file(path, ignored) &&
+      (!file || (file.get(), file.bad()))) {
+    throw Failure("The file " + path.string() +
+                  " cannot be read: " + std::strerror(errno));
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> FindPhotographs(const std::string& image_path,
@@ -66,7 +80,13 @@ std::vector<std::string> FindPhotographs(const std::string& image_path,
       }
     } else if (FreeImage_GetFileType(path.c_str()) != FIF_UNKNOWN) {
       names.push_back(path.lexically_relative(image_path).string());
+    } else {
+      CheckReadable(path);
     }
+  }
+  if (error && error != std::errc::no_such_file_or_directory) {
+    throw Failure("The folder " + image_path +
+                  " cannot be read: " + error.message());
   }
   std::sort(names.begin(), names.end());
   return names;

@@ -109,24 +109,27 @@ void StereoRun::PrepareFolders() const {
   }
   std::set<std::string> map_folders;
   std::set<std::string> picture_folders;
+  std::set<std::string> other_folders;
   for (const PassPlan& pass : plan_.passes) {
     for (size_t i = 0; i < plan_.problems.size(); ++i) {
-      if (!pass.Computes(i)) {
-        continue;
-      }
       const int view = plan_.problems[i].reference;
       for (const MapKind kind :
            {MapKind::kDepth, MapKind::kNormal, MapKind::kConsistencyGraph}) {
-        if (kind != MapKind::kConsistencyGraph || pass.writes_graphs) {
-          map_folders.insert(colmap::GetParentDir(
-              plan_.MapPath(kind, view, pass.pass, pass.level)));
-        }
+        const bool writes =
+            pass.Computes(i) &&
+            (kind != MapKind::kConsistencyGraph || pass.writes_graphs);
+        (writes ? map_folders : other_folders)
+            .insert(colmap::GetParentDir(
+                plan_.MapPath(kind, view, pass.pass, pass.level)));
       }
-      if (pass.writes_pictures) {
+      if (pass.Computes(i) && pass.writes_pictures) {
         picture_folders.insert(
             PictureFolder(pass, plan_.View(view, pass.level)));
       }
     }
+  }
+  for (const std::string& folder : other_folders) {
+    RemoveStaleTemporaries(folder);
   }
   for (const std::string& folder : map_folders) {
     PrepareFolder(folder, "maps");

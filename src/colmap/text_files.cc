@@ -2,7 +2,6 @@
 
 #include <cerrno>
 #include <cstring>
-#include <iterator>
 
 #include "src/base/failure.h"
 
@@ -17,7 +16,7 @@ TextLines::TextLines(const std::string& path) : path_(path), file_(path) {
 bool TextLines::Next(std::string* line) {
   if (!std::getline(file_, *line)) {
     if (file_.bad()) {
-      throw Failure(path_ + " cannot be read");
+      throw Failure(path_ + " cannot be read: " + std::strerror(errno));
     }
     return false;
   }
@@ -34,12 +33,16 @@ bool TextLines::Next(std::string* line) {
 std::string ReadWholeFile(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) {
-    throw Failure(path + " cannot be opened: " + std::strerror(errno));
+    throw ReadFailure(path + " cannot be opened: " + std::strerror(errno));
   }
-  std::string content((std::istreambuf_iterator<char>(file)),
-                      std::istreambuf_iterator<char>());
+  std::string content;
+  char buffer[4096];
+  do {
+    file.read(buffer, sizeof(buffer));
+    content.append(buffer, static_cast<size_t>(file.gcount()));
+  } while (file);
   if (file.bad()) {
-    throw Failure(path + " cannot be read");
+    throw ReadFailure(path + " cannot be read: " + std::strerror(errno));
   }
   return content;
 }

@@ -29,7 +29,7 @@ class TextLines {
   int number_ = 0;
 };
 
-// Throws Failure.
+// Throws ReadFailure.
 std::string ReadWholeFile(const std::string& path);
 
 // Without blanks at both ends.

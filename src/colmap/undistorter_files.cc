@@ -3,10 +3,13 @@
 #include <FreeImage.h>
 
 #include <filesystem>
+#include <memory>
 #include <system_error>
 
+#include "src/base/atomic_file.h"
 #include "src/base/failure.h"
 #include "src/colmap/fatal_errors.h"
+#include "src/colmap/photo_formats.h"
 #include "src/colmap/progress.h"
 #include "src/colmap/views.h"
 #include "util/misc.h"
@@ -40,11 +43,7 @@ void CheckUndistorterPaths(const std::string& image_path,
 }
 
 bool HasSizeOf(const colmap::Camera& camera, const std::string& path) {
-  const FREE_IMAGE_FORMAT format = FreeImage_GetFileType(path.c_str());
-  FIBITMAP* header =
-      format == FIF_UNKNOWN
-          ? nullptr
-          : FreeImage_Load(format, path.c_str(), FIF_LOAD_NOPIXELS);
+  FIBITMAP* header = LoadPicture(path, FIF_LOAD_NOPIXELS);
   if (header == nullptr) {
     PrintWarning("The image " + path + " cannot be read; it is left out");
     return false;
@@ -67,11 +66,33 @@ bool ReadPhotoOf(const colmap::Camera& camera, const std::string& path,
     *bitmap =
         ReadBitmap(path, /* in_color */ true, static_cast<int>(camera.Width()),
                    static_cast<int>(camera.Height()));
+  } catch (const ReadFailure&) {
+    throw;
   } catch (const Failure& error) {
     WarnOfPhoto(error);
     return false;
   }
   return true;
+}
+
+void WritePhoto(const colmap::Bitmap& bitmap, const std::string& path) {
+  FREE_IMAGE_FORMAT format = FreeImage_GetFIFFromFilename(path.c_str());
+  format = format == FIF_UNKNOWN ? FIF_PNG : format;
+  // As COLMAP does. The library does not look at what becomes of a file's end.
+  const int flags = format == FIF_JPEG ? JPEG_QUALITYSUPERB : 0;
+  const std::unique_ptr<FIMEMORY, decltype(&FreeImage_CloseMemory)> memory(
+      FreeImage_OpenMemory(), &FreeImage_CloseMemory);
+  BYTE* data = nullptr;
+  DWORD size = 0;
+  // It asks for a picture that it may change, and does not.
+  if (!FreeImage_SaveToMemory(format, const_cast<FIBITMAP*>(bitmap.Data()),
+                              memory.get(), flags) ||
+      !FreeImage_AcquireMemory(memory.get(), &data, &size)) {
+    throw Failure("The image " + path + " cannot be written in its format");
+  }
+  AtomicFile file(path);
+  file.Write(data, size);
+  file.Commit();
 }
 
 void RemoveOutput(const std::string& input_path,

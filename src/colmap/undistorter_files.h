@@ -23,10 +23,14 @@ void CheckUndistorterPaths(const std::string& image_path,
 // its camera.
 bool HasSizeOf(const colmap::Camera& camera, const std::string& path);
 
-// Reads a photograph. Prints a warning, and returns false, if that cannot be
-// done or if it does not have the size of its camera.
+// Reads a photograph. Prints a warning, and returns false, if it is damaged or
+// does not have the size of its camera. Throws ReadFailure.
 bool ReadPhotoOf(const colmap::Camera& camera, const std::string& path,
                  colmap::Bitmap* bitmap);
+
+// Writes a photograph, or a mask, in the format that its name says, or PNG.
+// Throws Failure.
+void WritePhoto(const colmap::Bitmap& bitmap, const std::string& path);
 
 // Makes room for what is made of an input. A link there, as another run may
 // have made it, would be written through. Throws Failure if it is the input

@@ -104,6 +104,10 @@ std::string DescribeFile(const std::string& path) {
     file.read(buffer.get(), kBufferSize);
     hash.Add(buffer.get(), static_cast<size_t>(file.gcount()));
   } while (file);
+  if (file.bad()) {
+    throw Failure("The image " + path +
+                  " cannot be read: " + std::strerror(errno));
+  }
   return Hex(hash);
 }
 

@@ -23,21 +23,20 @@ TEST(RemoveStaleTemporaries, LeavesWhatIsBeingWritten) {
     fs::last_write_time(folder / name, fs::file_time_type::clock::now() -
                                            std::chrono::hours(hours_ago));
   };
-  const std::string here = std::string("map.part-") + host + "-";
-  // No process has such a number.
-  const std::string of_dead_process = here + "999999999-0";
-  const std::string of_this_process = here + std::to_string(getpid()) + "-0";
+  // Nobody has locked it, so that its process is gone.
+  const std::string of_dead_process = std::string("map.part-") + host + "-9-0";
   write(of_dead_process, 0);
-  write(of_this_process, 48);
+  AtomicFile being_written(folder / "other_map");
   write("map.part-elsewhere-7-0", 1);
   write("map.part-elsewhere-8-0", 48);
   write("map", 48);
   RemoveStaleTemporaries(folder);
   EXPECT_FALSE(fs::exists(folder / of_dead_process));
-  EXPECT_TRUE(fs::exists(folder / of_this_process));
   EXPECT_TRUE(fs::exists(folder / "map.part-elsewhere-7-0"));
   EXPECT_FALSE(fs::exists(folder / "map.part-elsewhere-8-0"));
   EXPECT_TRUE(fs::exists(folder / "map"));
+  being_written.Commit();
+  EXPECT_TRUE(fs::exists(folder / "other_map"));
   fs::remove_all(folder);
 }
 

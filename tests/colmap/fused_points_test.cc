@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "src/colmap/ply_files.h"
 #include "src/colmap/text_files.h"
 #include "tests/colmap/test_folder.h"
 
@@ -63,7 +64,7 @@ TEST(FusedPoints, OfEitherRuleDifferByTheConfidence) {
     WriteFusedPoints(folder.Path("cloud.ply"), cloud, {origin, 0, 0});
     WriteFusedPoints(folder.Path("points.ply"), PlyPoints(cloud), {{3, 0}, {3}},
                      {origin, 0, 0});
-    EXPECT_TRUE(HasWholePoints(folder.Path("cloud.ply")));
+    EXPECT_TRUE(IsWholePly(folder.Path("cloud.ply")));
     EXPECT_EQ(ReadWholeFile(folder.Path("cloud.ply.vis")),
               ReadWholeFile(folder.Path("points.ply.vis")));
     const std::string with = ReadWholeFile(folder.Path("cloud.ply"));
@@ -75,21 +76,6 @@ TEST(FusedPoints, OfEitherRuleDifferByTheConfidence) {
     float confidence;
     std::memcpy(&confidence, &with[with.size() - sizeof(float)], sizeof(float));
     EXPECT_EQ(confidence, 1.5f);
-  }
-}
-
-TEST(HasWholePoints, TellsWholeFilesFromParts) {
-  const TestFolder folder;
-  const std::string path = folder.Path("fused.ply");
-  EXPECT_FALSE(HasWholePoints(path));
-  for (const double origin : {0.0, 1e6}) {
-    WriteFusedPoints(path, TwoPoints(), {}, {origin, 0, 0});
-    const std::string content = ReadWholeFile(path);
-    EXPECT_TRUE(HasWholePoints(path));
-    for (const size_t size : {size_t{0}, size_t{20}, content.size() - 1}) {
-      std::ofstream(path, std::ios::binary) << content.substr(0, size);
-      EXPECT_FALSE(HasWholePoints(path)) << size;
-    }
   }
 }
 

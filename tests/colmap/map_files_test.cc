@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <boost/filesystem.hpp>
+#include <ctime>
 #include <fstream>
 
 #include "mvs/consistency_graph.h"
@@ -183,19 +184,46 @@ TEST(AtomicFile, FailsWhereNothingCanBeWritten) {
   EXPECT_EQ(folder.NumFiles(), 0);
 }
 
-TEST(AtomicFile, StaleTemporariesAreRemoved) {
-  const TestFolder folder;
+// A temporary name of a process of this machine.
+std::string OwnMark() {
   char host[256] = "";
   gethostname(host, sizeof(host) - 1);
-  const std::string mark = std::string(".part-") + host + "-";
-  // Larger than any process number, ours, and one of another machine.
-  std::ofstream(folder.Path("a" + mark + "99999999")) << "x";
-  std::ofstream(folder.Path("b" + mark + std::to_string(getpid()))) << "x";
-  std::ofstream(folder.Path("c.part-elsewhere-99999999")) << "x";
-  std::ofstream(folder.Path("d.bin")) << "x";
+  return std::string(".part-") + host + "-1-0";
+}
+
+TEST(AtomicFile, StaleTemporariesAreRemoved) {
+  const TestFolder folder;
+  AtomicFile being_written(folder.Path("a.bin"));
+  // Nobody has these locked, whatever processes there are. Locks of another
+  // machine need not be seen here, unless they are old.
+  std::ofstream(folder.Path("a.bin" + OwnMark())) << "x";
+  std::ofstream(folder.Path("b.bin" + OwnMark())) << "x";
+  std::ofstream(folder.Path("c.part-elsewhere-1-0")) << "x";
+  std::ofstream(folder.Path("d.part-elsewhere-1-0")) << "x";
+  boost::filesystem::last_write_time(folder.Path("d.part-elsewhere-1-0"),
+                                     std::time(nullptr) - 2 * 24 * 3600);
+  std::ofstream(folder.Path("e.bin")) << "x";
   RemoveStaleTemporaries(folder.Path(""));
-  EXPECT_FALSE(boost::filesystem::exists(folder.Path("a" + mark + "99999999")));
+  EXPECT_FALSE(boost::filesystem::exists(folder.Path("a.bin" + OwnMark())));
+  EXPECT_FALSE(boost::filesystem::exists(folder.Path("b.bin" + OwnMark())));
+  EXPECT_TRUE(boost::filesystem::exists(folder.Path("c.part-elsewhere-1-0")));
+  EXPECT_FALSE(boost::filesystem::exists(folder.Path("d.part-elsewhere-1-0")));
   EXPECT_EQ(folder.NumFiles(), 3);
+  being_written.Commit();
+  EXPECT_TRUE(boost::filesystem::exists(folder.Path("a.bin")));
+}
+
+TEST(AtomicFile, RemovesWhatAnotherRunHasLeftOfItself) {
+  const TestFolder folder;
+  for (const std::string& name :
+       {std::string("a.bin"), std::string(250, 'n')}) {
+    const std::string left = name.substr(0, 200) + OwnMark();
+    std::ofstream(folder.Path(left)) << "x";
+    std::ofstream(folder.Path("other" + OwnMark())) << "x";
+    AtomicFile(folder.Path(name)).Commit();
+    EXPECT_FALSE(boost::filesystem::exists(folder.Path(left)));
+    EXPECT_TRUE(boost::filesystem::exists(folder.Path("other" + OwnMark())));
+  }
 }
 
 TEST(PrepareFolder, MakesOrRefuses) {

@@ -85,7 +85,7 @@ class Resume(StereoTestCase):
         self.wait_for_output(first, "Configuration has")
         for _ in range(3):
             self.assert_one_error(tiny.run_stereo(self.folder, **options),
-                                  "Another run of stereo computes in " + self.folder)
+                                  "Another run is at work in " + self.folder)
         self.assertIsNone(first.poll(), "it ended before the second one began")
         first.communicate()
         self.assertEqual(first.returncode, 0)
