@@ -9,6 +9,7 @@
 
 #include "base/camera_models.h"
 #include "src/base/failure.h"
+#include "src/colmap/image_name.h"
 #include "src/colmap/text_files.h"
 #include "util/endian.h"
 #include "util/misc.h"
@@ -30,6 +31,9 @@ struct Observations {
   std::vector<point3D_t> point_ids;
 };
 
+// Of a photograph, in pixels. Maps are not larger, either (map_files.cc).
+bool IsSide(size_t pixels) { return pixels >= 1 && pixels <= 1000000; }
+
 // Puts a model together. Throws Failure, without the name of the file, for what
 // makes no sense.
 class ModelBuilder {
@@ -50,6 +54,11 @@ class ModelBuilder {
           colmap::CameraModelIdToName(camera.ModelId()) + " takes " +
           std::to_string(colmap::CameraModelNumParams(camera.ModelId())));
     }
+    if (!IsSide(camera.Width()) || !IsSide(camera.Height())) {
+      throw Failure(name + " has " + std::to_string(camera.Width()) + "x" +
+                    std::to_string(camera.Height()) +
+                    " pixels, which no photograph has");
+    }
     for (const double value : camera.Params()) {
       if (!std::isfinite(value)) {
         throw Failure(name + " has a parameter that is not a finite number");
@@ -62,6 +71,7 @@ class ModelBuilder {
 
   void Add(const Eigen::Vector4d& rotation, const Eigen::Vector3d& translation,
            const Observations& observations, colmap::Image image) {
+    CheckImageName(image.Name());
     const std::string name =
         "image " + std::to_string(image.ImageId()) + " (" + image.Name() + ")";
     const auto camera = parts_.cameras->find(image.CameraId());

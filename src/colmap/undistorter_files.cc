@@ -1,7 +1,5 @@
 #include "src/colmap/undistorter_files.h"
 
-#include <FreeImage.h>
-
 #include <filesystem>
 #include <system_error>
 
@@ -40,20 +38,10 @@ void CheckUndistorterPaths(const std::string& image_path,
 }
 
 bool HasSizeOf(const colmap::Camera& camera, const std::string& path) {
-  const FREE_IMAGE_FORMAT format = FreeImage_GetFileType(path.c_str());
-  FIBITMAP* header =
-      format == FIF_UNKNOWN
-          ? nullptr
-          : FreeImage_Load(format, path.c_str(), FIF_LOAD_NOPIXELS);
-  if (header == nullptr) {
-    PrintWarning("The image " + path + " cannot be read; it is left out");
-    return false;
-  }
-  const size_t width = FreeImage_GetWidth(header);
-  const size_t height = FreeImage_GetHeight(header);
-  FreeImage_Unload(header);
   try {
-    CheckPhotoSize(path, width, height, camera.Width(), camera.Height());
+    const auto size = ReadImageSize(path);
+    CheckPhotoSize(path, size.first, size.second, camera.Width(),
+                   camera.Height());
   } catch (const Failure& error) {
     WarnOfPhoto(error);
     return false;
