@@ -111,8 +111,7 @@ def check_name(name, path):
     if (not name or not parts[0] or ".." in parts or len(os.fsencode(name)) > 4000
             or max(len(os.fsencode(part)) for part in parts) > 255
             or any(ord(letter) < 32 or ord(letter) == 127 for letter in name)):
-        text = "".join(letter if letter.isprintable() else "?" for letter in name[:100])
-        raise Failure(f"{path} calls a photograph '{text}', which leads out of the folder of images "
+        raise Failure(f"{path} calls a photograph '{name[:100]}', which leads out of the folder of images "
                       "or is no name of a file; rename it there")
 
 

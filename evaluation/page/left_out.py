@@ -71,14 +71,18 @@ def _read_database(path):
     address = f"file:{urllib.parse.quote(os.path.abspath(path))}?{how}"
     try:
         with closing(sqlite3.connect(address, uri=True)) as database:
+            database.text_factory = os.fsdecode  # Names of files may be no text.
             _check_tables(database)
+            # A column may hold values of any type, and none.
             names = dict(database.execute(
-                "SELECT CAST(image_id AS INTEGER), CAST(name AS TEXT) FROM images"))
+                "SELECT image_id, CAST(name AS TEXT) FROM images "
+                "WHERE typeof(image_id) = 'integer' AND name NOT NULL"))
             features = dict(database.execute(
-                "SELECT CAST(image_id AS INTEGER), CAST(rows AS INTEGER) FROM keypoints"))
-            pairs = list(database.execute("SELECT CAST(pair_id AS INTEGER) "
-                                          "FROM two_view_geometries WHERE rows > 0"))
-    except (sqlite3.Error, TypeError, OverflowError) as error:
+                "SELECT image_id, rows FROM keypoints WHERE typeof(rows) = 'integer'"))
+            pairs = list(database.execute(
+                "SELECT pair_id FROM two_view_geometries "
+                "WHERE typeof(pair_id) = 'integer' AND rows > 0"))
+    except (sqlite3.Error, UnicodeDecodeError) as error:  # Of a message that quotes the file.
         raise Failure(f"{path} is not a readable database of COLMAP ({error}); move it away to "
                       "make the page without it") from error
     matched = dict.fromkeys(names, 0)
