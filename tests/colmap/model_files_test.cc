@@ -121,6 +121,13 @@ TEST_F(ModelFiles, NamesWhatIsWrong) {
       {"images.txt", "7 0 0 0 0 0 0 0 3 a.jpg\n\n", "rotation"},
       {"images.txt", "7 1 0 0 0 0 0 0 3\n\n", "name of the image"},
       {"images.txt", "7 1 0 0 0 0 0 0 3 ../a.jpg\n\n", "'../a.jpg'"},
+      // Numbers by which COLMAP says that there is none, on which it aborts.
+      {"images.txt", "7 1 0 0 0 0 0 0 4294967295 a.jpg\n\n", "4294967295"},
+      {"images.txt", "4294967295 1 0 0 0 0 0 0 3 a.jpg\n\n", "4294967295"},
+      {"cameras.txt", "4294967295 PINHOLE 640 480 500 500 320 240\n",
+       "4294967295"},
+      {"points3D.txt", "18446744073709551615 0 0 1 9 9 9 0.5 7 0\n",
+       "18446744073709551615"},
       {"cameras.txt", "3 PINHOLE 0 480 500 500 320 240\n", "0x480"},
       {"cameras.txt", "3 PINHOLE 4294967297 480 500 500 320 240\n",
        "4294967297x480"},

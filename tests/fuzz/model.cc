@@ -33,6 +33,9 @@ void ReadModelAndViews(std::string_view input, const std::string& extension) {
         std::abort();
       }
     }
+    if (model.images.empty()) {
+      return;
+    }
     ViewConfig config;
     config.reference = model.GetImageName(0);
     config.sources = ViewConfig::Sources::kAuto;
