@@ -107,14 +107,21 @@ HeaderSize ExrSize(const Bytes& bytes) {
     const std::string name = text_at(at);
     at += name.size() + 1;
     at += text_at(at).size() + 1;
-    uint32_t num_bytes = 0;
-    if (name.empty() || at + sizeof(num_bytes) > bytes.size()) {
+    if (name.empty()) {
       return size;
+    }
+    uint32_t num_bytes = 0;
+    if (at + sizeof(num_bytes) > bytes.size()) {
+      return {};
     }
     std::memcpy(&num_bytes, bytes.data() + at, sizeof(num_bytes));
     at += sizeof(num_bytes);
+    // The library would take so many bytes before it reads them.
+    if (num_bytes > bytes.size() - at) {
+      return {};
+    }
     int32_t box[4];  // Smallest x and y, largest x and y.
-    if (name == "dataWindow" && at + sizeof(box) <= bytes.size()) {
+    if (name == "dataWindow" && num_bytes == sizeof(box)) {
       std::memcpy(box, bytes.data() + at, sizeof(box));
       size = {int64_t{box[2]} - box[0] + 1, int64_t{box[3]} - box[1] + 1};
     }

@@ -109,24 +109,28 @@ class PageOfStrangersTest(PageCase):
         for part in ("<img src=x", "<b>", "\"<script", "alert(1)>"):
             self.assertNotIn(part, text)
 
-    def test_databases_that_are_programs(self):
+    def write_database(self, *statements):
+        with closing(sqlite3.connect(self.path("out/database.db"))) as database:
+            for statement in [*statements, "CREATE TABLE keypoints(image_id, rows)",
+                              "CREATE TABLE two_view_geometries(pair_id, rows)",
+                              "INSERT INTO two_view_geometries VALUES ('x', 1), (NULL, 'y')"]:
+                database.execute(statement)
+            database.commit()
+
+    def test_a_database_that_is_a_program(self):
         self.make(NAMES)
-        for statements in (
-                ["CREATE VIEW images AS WITH RECURSIVE n(image_id) AS "
-                 "(SELECT 1 UNION ALL SELECT image_id + 1 FROM n) SELECT image_id, '' AS name "
-                 "FROM n"],
-                ["CREATE TABLE images(image_id, name)"]):
-            with closing(sqlite3.connect(self.path("out/database.db"))) as database:
-                for statement in [*statements, "CREATE TABLE keypoints(image_id, rows)",
-                                  "CREATE TABLE two_view_geometries(pair_id, rows)"]:
-                    database.execute(statement)
-                database.execute("INSERT INTO two_view_geometries VALUES ('x', 1)")
-                if "TABLE images" in statements[0]:
-                    database.execute("INSERT INTO images VALUES (NULL, x'00ff')")
-                database.commit()
-            self.expect_error([self.workspace, "--out", self.page], "database.db")
-            self.assertFalse(os.path.exists(self.page))
-            os.remove(self.path("out/database.db"))
+        self.write_database(
+            "CREATE VIEW images AS WITH RECURSIVE n(image_id) AS (SELECT 1 UNION ALL "
+            "SELECT image_id + 1 FROM n) SELECT image_id, '' AS name FROM n")
+        self.expect_error([self.workspace, "--out", self.page], "database.db")
+        self.assertFalse(os.path.exists(self.page))
+
+    def test_values_of_any_type_in_a_database(self):
+        self.make(NAMES)
+        self.write_database("CREATE TABLE images(image_id, name)", "INSERT INTO images VALUES "
+                            "(NULL, 'a'), ('x', 'b'), (1, NULL), (3, 'other.jpg')")
+        text, _ = self.make_page()
+        self.assertIn("other.jpg", text)
 
 
 if __name__ == "__main__":

@@ -225,6 +225,15 @@ TEST_F(DepthFiles, RefusesSizesThatNoMapHas) {
             std::string::npos);
 }
 
+TEST_F(DepthFiles, RefusesExrAttributesThatAreLargerThanTheFile) {
+  cv::imwrite(Path("a.exr"), Floats());
+  std::string bytes = Read("a.exr");
+  const size_t type = bytes.find(std::string("chlist\0", 7));
+  ASSERT_NE(type, std::string::npos);
+  bytes.replace(type + 7, 4, "\x66\x66\x66\x66");  // 1.7 GB.
+  EXPECT_NE(ErrorOf(Write("a.exr", bytes)).find("damaged"), std::string::npos);
+}
+
 TEST_F(DepthFiles, RefusesLongHeaders) {
   // Blanks that a search would have to pass over.
   const std::string blanks(1000000, ' ');
