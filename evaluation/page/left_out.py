@@ -82,7 +82,8 @@ def _read_database(path):
             pairs = list(database.execute(
                 "SELECT pair_id FROM two_view_geometries "
                 "WHERE typeof(pair_id) = 'integer' AND rows > 0"))
-    except (sqlite3.Error, UnicodeDecodeError) as error:  # Of a message that quotes the file.
+    # A message may quote what is no text; a damaged file may say that it takes all memory.
+    except (sqlite3.Error, UnicodeDecodeError, MemoryError) as error:
         raise Failure(f"{path} is not a readable database of COLMAP ({error}); move it away to "
                       "make the page without it") from error
     matched = dict.fromkeys(names, 0)
