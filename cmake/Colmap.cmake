@@ -2,6 +2,8 @@
 # inside. The program is the target colmap_exe, at bin/colmap.
 
 option(TAPA_WITH_GUI "Build COLMAP's graphical user interface" ON)
+set(TAPA_COLMAP_BUILD "" CACHE PATH
+    "Build folder with the same options, whose compiled COLMAP is taken; empty: none")
 
 set(colmap_dir ${CMAKE_BINARY_DIR}/colmap-3.8)
 # COLMAP_SOURCE_DIR may be given in the environment or as -DCOLMAP_SOURCE_DIR. It
@@ -81,6 +83,17 @@ endforeach()
 set_target_properties(colmap PROPERTIES SOURCES "${sources}")
 set_source_files_properties(${colmap_dir}/lib/PoissonRecon/PoissonRecon.cpp
   TARGET_DIRECTORY poisson_recon PROPERTIES COMPILE_OPTIONS -O2)
+
+if(TAPA_COLMAP_BUILD)
+  foreach(target colmap lsd pba poisson_recon sift_gpu vlfeat)
+    get_target_property(dir ${target} BINARY_DIR)
+    file(RELATIVE_PATH dir ${CMAKE_BINARY_DIR} ${dir})
+    file(GLOB_RECURSE objects CONFIGURE_DEPENDS
+      ${TAPA_COLMAP_BUILD}/${dir}/CMakeFiles/${target}.dir/*.o)
+    set_target_properties(${target} PROPERTIES
+      SOURCES "${objects}" LINKER_LANGUAGE CXX AUTOMOC OFF AUTORCC OFF)
+  endforeach()
+endif()
 
 # COLMAP declares what it compiles with per folder, not per target.
 get_directory_property(colmap_includes

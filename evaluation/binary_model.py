@@ -6,7 +6,8 @@ import struct
 import numpy as np
 
 from . import colmap_model, files
-from .colmap_model import PARAMETERS, Camera, View, check_camera, rotation_of
+from .colmap_model import (PARAMETERS, Camera, View, check_camera, check_finite, check_name,
+                           rotation_of)
 from .processes import Failure
 
 # COLMAP's numbers of the camera models that can be used.
@@ -32,6 +33,8 @@ class _Values:
         return name
 
     def skip(self, size):
+        if size > len(self._data) - self._at:
+            raise ValueError("the file ends too early")
         self._at += size
 
 
@@ -64,6 +67,8 @@ def read_images(path):
         for _ in range(values.take("Q")[0]):
             number, *pose, camera = values.take("i7di")
             images.append((number, pose, camera, values.take_name()))
+            check_finite(pose)
+            check_name(images[-1][-1], path)
             values.skip(24 * values.take("Q")[0])  # What it observes.
     except (struct.error, ValueError) as error:
         raise Failure(f"{path} is damaged") from error

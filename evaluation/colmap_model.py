@@ -6,6 +6,7 @@ camera's frame (x right, y down, z forward), so that a depth z at the ray is the
 point (u z, v z, z). Unreadable files raise Failure with the path in the message.
 """
 
+import math
 import os
 from dataclasses import dataclass
 
@@ -13,6 +14,7 @@ import numpy as np
 
 from .processes import Failure
 
+_MAX_SIDE = 1_000_000  # Of a photograph, in pixels, as COLMAP's maps have it.
 # Number of parameters by the name of the model.
 PARAMETERS = {"SIMPLE_PINHOLE": 3, "PINHOLE": 4, "THIN_PRISM_FISHEYE": 12}
 
@@ -64,12 +66,17 @@ def rotation_of(quaternion):
     The Python package, which reads models with this, needs no more than numpy.
     """
     length = np.linalg.norm(quaternion)
-    if not length > 0:
+    if not 0 < length < np.inf:
         raise ValueError(f"{quaternion} is no rotation")
     w, x, y, z = np.divide(quaternion, length)
     return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
                      [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
                      [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]])
+
+
+def check_finite(pose):
+    if not all(map(math.isfinite, pose)):
+        raise ValueError(f"{pose} is no pose")
 
 
 def _lines(path):
@@ -89,8 +96,23 @@ def check_camera(camera, number, path):
     if len(camera.params) != PARAMETERS[model]:
         raise Failure(f"{path}: {model} has {PARAMETERS[model]} parameters, "
                       f"not {len(camera.params)}")
-    if camera.width <= 0 or camera.height <= 0:
-        raise Failure(f"{path}: camera {number} has no pixels")
+    if not (0 < camera.width <= _MAX_SIDE and 0 < camera.height <= _MAX_SIDE):
+        raise Failure(f"{path}: camera {number} has no pixels, or more than a photograph has")
+    if not all(map(math.isfinite, camera.params)):
+        raise Failure(f"{path}: camera {number} has a parameter that is not a finite number")
+
+
+def check_name(name, path):
+    """Raises Failure unless a model's name of a photograph is that of a file below a folder.
+
+    Whatever is made of a photograph is named after it: see src/colmap/image_name.h.
+    """
+    parts = name.split("/")
+    if (not name or not parts[0] or ".." in parts or len(os.fsencode(name)) > 4000
+            or max(len(os.fsencode(part)) for part in parts) > 255
+            or any(ord(letter) < 32 or ord(letter) == 127 for letter in name)):
+        raise Failure(f"{path} calls a photograph '{name[:100]}', which leads out of the folder of images "
+                      "or is no name of a file; rename it there")
 
 
 def read_cameras(path):
@@ -126,11 +148,13 @@ def read_views(folder):
         fields = line.split(maxsplit=9)
         try:
             pose = [float(value) for value in fields[1:8]]
+            check_finite(pose)
             view = View(int(fields[0]), fields[9].strip(), cameras[int(fields[8])],
                         rotation_of(pose[:4]), np.array(pose[4:7]))
         except (IndexError, KeyError, ValueError) as error:
             raise Failure(f"{path}: no photograph of a known camera in the line "
                              f"'{line[:80]}'") from error
+        check_name(view.name, path)
         views.append(view)
     if not views:
         raise Failure(f"{path} holds no photograph")

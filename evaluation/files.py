@@ -89,7 +89,7 @@ def read_json(path, model=None):
             content = json.load(file)
     except (FileNotFoundError, NotADirectoryError):
         return None
-    except (OSError, ValueError) as error:
+    except (OSError, RecursionError, ValueError) as error:
         raise Failure(f"{path} cannot be read ({error}); remove it to make it anew") from error
     if model is None:
         return content

@@ -6,7 +6,7 @@ As a program it prints those of DATA/sparse that are in DATA/images, a line each
 import os
 import sys
 
-from . import binary_model, files
+from . import binary_model, colmap_model, files
 
 
 def read_names(folder):
@@ -18,7 +18,10 @@ def read_names(folder):
         lines = files.read_bytes(text).decode("utf-8-sig", errors="surrogateescape").split("\n")
         lines = [line.rstrip("\r") for line in lines if not line.startswith("#")]
         # A line of observations follows each photograph's own.
-        return [_name_in(line) for line in lines[0::2] if line.strip()]
+        names = [_name_in(line) for line in lines[0::2] if line.strip()]
+        for name in names:
+            colmap_model.check_name(name, text)
+        return names
     return None
 
 

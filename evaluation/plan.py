@@ -173,5 +173,5 @@ def _read(path):
             return tomllib.load(file)
     except OSError as error:
         raise Failure(f"{path} cannot be read: {error.strerror}") from error
-    except ValueError as error:  # Neither TOML nor even UTF-8.
+    except (RecursionError, ValueError) as error:  # Neither TOML nor even UTF-8.
         raise Failure(f"{path} is not TOML: {error}") from error

@@ -186,7 +186,8 @@ class _Binary:
                         for i, entry in enumerate(element.properties)])
         for begin in range(0, element.count, _ROWS):
             count = min(_ROWS, element.count - begin)
-            data = self._file.read(count * row.itemsize)
+            # A wrong header must not ask for all memory, here either.
+            data = self._file.read(min(count * row.itemsize, self._size - self._file.tell()))
             rows = np.frombuffer(data, row, len(data) // row.itemsize)
             values = np.empty((len(rows), len(columns)))
             for i, column in enumerate(columns):
@@ -239,7 +240,7 @@ class _Ascii:
                 yield rows.reshape(-1, len(columns))
                 if len(rows) < count:
                     return
-        except ValueError as error:
+        except (OverflowError, ValueError) as error:  # A list of infinite length, or no number.
             reason = str(error).partition(" at row")[0]
             if "invalid column" in reason:
                 reason = "there are values missing"

@@ -2,6 +2,7 @@
 
 import dataclasses
 import os
+import re
 import shlex
 import signal
 import subprocess
@@ -12,8 +13,14 @@ from . import progress
 
 
 class Failure(Exception):
-    """Something went wrong. Its text is one line for the user."""
+    """Something went wrong. Its text is one line for the user.
+
+    What it quotes of a file may have line breaks, and characters that command a terminal.
+    """
     exit_status = 1
+
+    def __str__(self):
+        return re.sub(r"[\0-\x1f\x7f]", "?", super().__str__())
 
 
 class Interrupted(Exception):

@@ -2,16 +2,16 @@
 # Installs what is missing, builds everything, runs the tests, several at a time,
 # and tells which took longest. Arguments go to ctest: scripts/test.sh -R correlation.
 # Tests that are long only because their images are large (label full_size), and those
-# that make whole Debian roots (bare_root), are left out unless an argument names the
-# label: scripts/test.sh -L full_size. BUILD_DIR names another folder than build/.
+# that make whole Debian roots (bare_root) or make up files for a long time (fuzz), are left
+# out unless an argument names the label: scripts/test.sh -L full_size. BUILD_DIR names another folder than build/.
 set -euo pipefail
 
 here=$(cd "$(dirname "$0")" && pwd)
 "$here/build.sh" all
 cd "${BUILD_DIR:-$here/../build}"
 
-[[ "$*" == *full_size* || "$*" == *bare_root* ]] ||
-  set -- -LE '^(full_size|bare_root)$' "$@"
+[[ "$*" == *full_size* || "$*" == *bare_root* || "$*" == *fuzz* ]] ||
+  set -- -LE '^(full_size|bare_root|fuzz)$' "$@"
 rm -f tests.xml
 status=0
 ctest --parallel "$(nproc)" --timeout 1800 --output-on-failure \

@@ -36,13 +36,7 @@ class OfGraphs:
         self._path_of = path_of
 
     def of_view(self, view, depth):
-        path = self._path_of(view.name)
-        counts = confidence.read_graph(path)
-        if counts.shape != depth.shape:
-            raise Failure(f"{path} has {counts.shape[1]}x{counts.shape[0]} pixels, but the map "
-                          f"{depth.shape[1]}x{depth.shape[0]}; remove it, or take another "
-                          "--confidence")
-        return counts
+        return confidence.read_graph(self._path_of(view.name), depth.shape)
 
 
 def find(workspace, names, input_type, kind):

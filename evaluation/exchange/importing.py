@@ -19,7 +19,6 @@ class Target:
         self._workspace = Workspace(folder)
         self._overwrites = overwrites
         self.views = list(self._workspace.views.values())
-        layout.check_names(self.views)
         for view in self.views:
             if "PINHOLE" not in view.camera.model:
                 raise Failure(f"{folder} is no dense workspace: the camera of {view.name} has "

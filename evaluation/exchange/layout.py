@@ -48,14 +48,6 @@ def warn(names, what):
         processes.say(f"WARNING: {len(names)} {what}, such as {names[0]}")
 
 
-def check_names(views):
-    """Raises Failure if the name of a photograph would lead out of a folder of maps."""
-    for view in views:
-        if os.path.isabs(view.name) or ".." in view.name.split("/"):
-            raise Failure(f"the sparse model calls a photograph {view.name}, which leads out of "
-                          "the workspace; rename it there")
-
-
 def write_record(folder, extension, input_type, cameras, scales, confidence):
     """cameras: of each map's size, by name; scales: of PNG, by kind; confidence: what it is."""
     def stored(kind):

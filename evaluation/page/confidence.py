@@ -79,12 +79,18 @@ def _draw_seen(values, view, depth, points, confidence):
                   confidence[inside[seen]])
 
 
-def read_graph(path):
-    """How many photographs agree at each pixel, by a consistency graph of COLMAP."""
+def read_graph(path, shape):
+    """How many photographs agree at each pixel, by a consistency graph of COLMAP.
+
+    shape: of the map that it belongs to. Its own says nothing of how large the file is.
+    """
     data = files.read_bytes(path)
     header = re.match(rb"(\d{1,6})&(\d{1,6})&1&", data)
     try:
         width, height = map(int, header.groups())
+        if (height, width) != shape:
+            raise Failure(f"{path} has {width}x{height} pixels, but the map "
+                          f"{shape[1]}x{shape[0]}; remove it, or compute the maps again")
         words = array.array("i", data[header.end():])
         counts, at = np.zeros((height, width), np.float32), 0
         while at < len(words):
@@ -93,7 +99,7 @@ def read_graph(path):
                 raise ValueError
             counts[row, column] = count
             at += 3 + count
-    except (AttributeError, ValueError, IndexError, MemoryError) as error:
+    except (AttributeError, ValueError, IndexError) as error:
         raise Failure(f"{path} is not a consistency graph of COLMAP, or damaged; remove it to "
                       "go on without it") from error
     return counts

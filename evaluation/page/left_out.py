@@ -55,6 +55,15 @@ def _other_models(workspace):
     return reasons
 
 
+def _check_tables(database):
+    """A view in the place of a table is a program, which need not end."""
+    found = {name for (name,) in database.execute(
+        "SELECT name FROM sqlite_master WHERE type = 'table'")}
+    missing = {"images", "keypoints", "two_view_geometries"} - found
+    if missing:
+        raise sqlite3.DatabaseError(f"there is no table {min(missing)}")
+
+
 def _read_database(path):
     """By name: how many features a photograph has, and how many others it matches."""
     # Reading leaves files of its own beside a database that may change meanwhile.
@@ -62,11 +71,19 @@ def _read_database(path):
     address = f"file:{urllib.parse.quote(os.path.abspath(path))}?{how}"
     try:
         with closing(sqlite3.connect(address, uri=True)) as database:
-            names = dict(database.execute("SELECT image_id, name FROM images"))
-            features = dict(database.execute("SELECT image_id, rows FROM keypoints"))
+            database.text_factory = os.fsdecode  # Names of files may be no text.
+            _check_tables(database)
+            # A column may hold values of any type, and none.
+            names = dict(database.execute(
+                "SELECT image_id, CAST(name AS TEXT) FROM images "
+                "WHERE typeof(image_id) = 'integer' AND name NOT NULL"))
+            features = dict(database.execute(
+                "SELECT image_id, rows FROM keypoints WHERE typeof(rows) = 'integer'"))
             pairs = list(database.execute(
-                "SELECT pair_id FROM two_view_geometries WHERE rows > 0"))
-    except sqlite3.Error as error:
+                "SELECT pair_id FROM two_view_geometries "
+                "WHERE typeof(pair_id) = 'integer' AND rows > 0"))
+    # A message may quote what is no text; a damaged file may say that it takes all memory.
+    except (sqlite3.Error, UnicodeDecodeError, MemoryError) as error:
         raise Failure(f"{path} is not a readable database of COLMAP ({error}); move it away to "
                       "make the page without it") from error
     matched = dict.fromkeys(names, 0)

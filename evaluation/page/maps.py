@@ -64,7 +64,7 @@ class Painter:
         depth = depth_maps.read_map(view.depth)
         known = depth_maps.is_depth(depth)
         pictures = [*self._photograph(view), self._depth(depth, known), *self._normals(view),
-                    *self._confident(view, depth), *self._agreeing(view), *self._origin(view)]
+                    *self._confident(view, depth), *self._agreeing(view, depth), *self._origin(view)]
         self.titles.update(picture.title for picture in pictures)
         facts = [f"depth at {percent(known.mean(), 0)} % of {depth.shape[1]} x {depth.shape[0]} "
                  "pixels"]
@@ -102,11 +102,11 @@ class Painter:
                                         self._confidence, min(self._width, depth.shape[1]))
             yield _numbers("confidence of points", values, self.most_views)
 
-    def _agreeing(self, view):
+    def _agreeing(self, view, depth):
         name = f"{view.name}.{self._workspace.kind}.bin"
         path = self._workspace.path("stereo", "consistency_graphs", name)
         if os.path.exists(path):
-            counts = confidence.read_graph(path)
+            counts = confidence.read_graph(path, depth.shape)
             yield _numbers("photographs that agree", self._fit(counts, cv2.INTER_NEAREST),
                            max(1, counts.max()))
 

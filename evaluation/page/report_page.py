@@ -14,6 +14,8 @@ _POINTS = 1_000_000  # Of all sets together.
 _CLOUDS = ("fused_agreement", "fused", "fused_default")  # The first that there is, of a method.
 _REPORT_LINK = re.compile(r"\]\(([^():]*)\.md\)")
 _IMAGE = re.compile(r'src="([^"]*)"')
+_LINK = re.compile(r'href="([^"]*)"')
+_PLAIN_LINK = re.compile(r"https?://.*|[#\w./%-]*")  # No other scheme, such as javascript.
 
 
 def write_beside(path, markdown, reports):
@@ -53,13 +55,17 @@ def _to_html(text):
     converter = markdown.Markdown(extensions=["tables"])
     converter.preprocessors.deregister("html_block")
     converter.inlinePatterns.deregister("html")
-    return converter.convert(text.partition("\n")[2])
+    return _LINK.sub(lambda match: match[0] if _PLAIN_LINK.fullmatch(match[1]) else 'href="#"',
+                     converter.convert(text.partition("\n")[2]))
 
 
 def _take_in_pictures(page, folder):
     """Replaces addresses of files in or below a folder by what these hold."""
     def data_of(match):
         path = os.path.join(folder, urllib.parse.unquote(match[1].replace("&amp;", "&")))
+        # A report has names of files of strangers, and its page may be passed on.
+        if not os.path.realpath(path).startswith(os.path.join(os.path.realpath(folder), "")):
+            raise Failure(f"the report shows a picture that is not beside it, {path}")
         kind = mimetypes.guess_type(path)[0] or "application/octet-stream"
         data = base64.b64encode(files.read_bytes(path)).decode("ascii")
         return f'src="data:{kind};base64,{data}"'

@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cstdlib>
 #include <exception>
@@ -18,8 +19,18 @@ namespace {
 FatalErrors* innermost = nullptr;
 std::atomic<bool> has_failed{false};
 
+// What a message quotes of a file may have line breaks, and characters that
+// command a terminal.
+std::string OnOneLine(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(),
+      [](unsigned char code) { return code < 0x20 || code == 0x7f; }, '?');
+  return text;
+}
+
 // One line of what went wrong.
-void Report(const std::string& line) {
+void Report(const std::string& text) {
+  const std::string line = OnOneLine(text);
   std::cout << std::flush;
   if (IsGuest()) {
     TellHost(line);
@@ -37,6 +48,9 @@ void Report(const std::string& line) {
   std::cerr << std::flush;
   _exit(EXIT_FAILURE);
 }
+
+// As glog wants it: [[noreturn]] is no part of a type.
+void __attribute__((noreturn)) EndThread() { EndGuestThread(); }
 
 void PrintException(const std::exception_ptr& exception) {
   try {
@@ -74,7 +88,7 @@ FatalErrors::FatalErrors(const std::string& context)
       outer_(innermost) {
   innermost = this;
   if (IsGuest()) {
-    google::InstallFailureFunction(&EndGuestThread);
+    google::InstallFailureFunction(&EndThread);
   }
   google::AddLogSink(this);
   // Otherwise the library would print a line of its own as well.

@@ -20,25 +20,27 @@ std::string MaskName(const std::string& image_name) {
   return image_name + ".png";
 }
 
-// Reads a mask in grey, of any size. width, height: of its photograph. kind: of
-// photographs, for the message.
-colmap::Bitmap ReadWholeMask(const std::string& path, int width, int height,
-                             const std::string& kind) {
-  colmap::Bitmap mask;
+template <typename Read>
+auto ReadOrExplain(const std::string& path, const Read& read) {
   try {
-    mask = ReadBitmap(path, /* in_color */ false);
+    return read();
   } catch (const Failure&) {
     throw Failure("The mask " + path +
                   " cannot be read; write it again, or remove it to mask "
                   "nothing of its image");
   }
-  if (!HaveSameShape(mask.Width(), mask.Height(), width, height)) {
-    throw Failure("The mask " + path + " has " +
-                  SizeText(mask.Width(), mask.Height()) +
-                  " pixels, which is not the shape of its photograph of " +
-                  SizeText(width, height) + "; make it of " + kind);
-  }
-  return mask;
+}
+
+// Reads a mask in grey, of any size. width, height: of its photograph. kind: of
+// photographs, for the message.
+colmap::Bitmap ReadWholeMask(const std::string& path, int width, int height,
+                             const std::string& kind) {
+  const auto size = ReadOrExplain(path, [&] { return ReadImageSize(path); });
+  CheckShapeOfPhoto("The mask " + path, static_cast<int>(size.first),
+                    static_cast<int>(size.second), width, height,
+                    "make it of " + kind);
+  return ReadOrExplain(path,
+                       [&] { return ReadBitmap(path, /* in_color */ false); });
 }
 
 colmap::Bitmap ReadWholeMask(const std::string& path, const SceneView& view) {

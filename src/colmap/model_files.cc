@@ -9,6 +9,7 @@
 
 #include "base/camera_models.h"
 #include "src/base/failure.h"
+#include "src/colmap/image_name.h"
 #include "src/colmap/text_files.h"
 #include "util/endian.h"
 #include "util/misc.h"
@@ -30,6 +31,27 @@ struct Observations {
   std::vector<point3D_t> point_ids;
 };
 
+// The number of a camera, an image or a point, unless it is the one by which
+// COLMAP says that there is none.
+template <typename Id>
+Id CheckId(Id id, Id invalid, const char* what) {
+  if (id == invalid) {
+    throw Failure(std::to_string(id) + " is not the number of " + what);
+  }
+  return id;
+}
+
+camera_t CheckCameraId(camera_t id) {
+  return CheckId(id, colmap::kInvalidCameraId, "a camera");
+}
+
+image_t CheckImageId(image_t id) {
+  return CheckId(id, colmap::kInvalidImageId, "an image");
+}
+
+// Of a photograph, in pixels. Maps are not larger, either (map_files.cc).
+bool IsSide(size_t pixels) { return pixels >= 1 && pixels <= 1000000; }
+
 // Puts a model together. Throws Failure, without the name of the file, for what
 // makes no sense.
 class ModelBuilder {
@@ -50,6 +72,11 @@ class ModelBuilder {
           colmap::CameraModelIdToName(camera.ModelId()) + " takes " +
           std::to_string(colmap::CameraModelNumParams(camera.ModelId())));
     }
+    if (!IsSide(camera.Width()) || !IsSide(camera.Height())) {
+      throw Failure(name + " has " + std::to_string(camera.Width()) + "x" +
+                    std::to_string(camera.Height()) +
+                    " pixels, which no photograph has");
+    }
     for (const double value : camera.Params()) {
       if (!std::isfinite(value)) {
         throw Failure(name + " has a parameter that is not a finite number");
@@ -62,6 +89,7 @@ class ModelBuilder {
 
   void Add(const Eigen::Vector4d& rotation, const Eigen::Vector3d& translation,
            const Observations& observations, colmap::Image image) {
+    CheckImageName(image.Name());
     const std::string name =
         "image " + std::to_string(image.ImageId()) + " (" + image.Name() + ")";
     const auto camera = parts_.cameras->find(image.CameraId());
@@ -95,6 +123,7 @@ class ModelBuilder {
   }
 
   void Add(point3D_t id, colmap::Point3D point) {
+    CheckId(id, colmap::kInvalidPoint3DId, "a point");
     const std::string name = "point " + std::to_string(id);
     for (const colmap::TrackElement& element : point.Track().Elements()) {
       if (parts_.images->count(element.image_id) == 0) {
@@ -232,7 +261,8 @@ void ReadLines(const std::string& path, const Read& read) {
 colmap::Camera ParseCamera(const std::string& line) {
   Fields fields(line);
   colmap::Camera camera;
-  camera.SetCameraId(fields.Read<camera_t>("the number of a camera"));
+  camera.SetCameraId(
+      CheckCameraId(fields.Read<camera_t>("the number of a camera")));
   const std::string model = fields.Word("a camera model");
   if (!colmap::ExistsCameraModelWithName(model)) {
     throw Failure("there is no camera model '" + model + "'");
@@ -272,14 +302,16 @@ void ParseImage(const std::string& line, TextLines* lines,
                 ModelBuilder* builder) {
   Fields fields(line);
   colmap::Image image;
-  image.SetImageId(fields.Read<image_t>("the number of an image"));
+  image.SetImageId(
+      CheckImageId(fields.Read<image_t>("the number of an image")));
   Eigen::Vector4d rotation;
   for (int i = 0; i < 4; ++i) {
     rotation(i) = fields.Read<double>("part of a rotation (QW QX QY QZ)");
   }
   const Eigen::Vector3d translation =
       fields.ReadVector("part of a translation (TX TY TZ)");
-  image.SetCameraId(fields.Read<camera_t>("the number of a camera"));
+  image.SetCameraId(
+      CheckCameraId(fields.Read<camera_t>("the number of a camera")));
   image.SetName(fields.Rest());
   Observations observations;
   std::string next;
@@ -376,7 +408,7 @@ void ReadElements(const std::string& path, const Read& read) {
 
 colmap::Camera ReadCamera(BinaryFile* file) {
   colmap::Camera camera;
-  camera.SetCameraId(file->Read<camera_t>());
+  camera.SetCameraId(CheckCameraId(file->Read<camera_t>()));
   SetModel(file->Read<int>(), &camera);
   camera.SetWidth(file->Read<uint64_t>());
   camera.SetHeight(file->Read<uint64_t>());
@@ -388,13 +420,13 @@ colmap::Camera ReadCamera(BinaryFile* file) {
 
 void ReadImage(BinaryFile* file, ModelBuilder* builder) {
   colmap::Image image;
-  image.SetImageId(file->Read<image_t>());
+  image.SetImageId(CheckImageId(file->Read<image_t>()));
   Eigen::Vector4d rotation;
   for (int i = 0; i < 4; ++i) {
     rotation(i) = file->Read<double>();
   }
   const Eigen::Vector3d translation = file->ReadVector();
-  image.SetCameraId(file->Read<camera_t>());
+  image.SetCameraId(CheckCameraId(file->Read<camera_t>()));
   image.SetName(file->ReadName());
   Observations observations;
   const size_t count = file->ReadCount(2 * sizeof(double) + sizeof(point3D_t));

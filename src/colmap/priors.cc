@@ -64,16 +64,11 @@ std::vector<PriorSample> SamplesAt(const std::vector<SeenPoint>& points,
 }
 
 Map<float> ReadPriorOf(const SceneView& view, const std::string& path) {
-  Map<float> prior = ReadDepthFile(path);
-  if (!HaveSameShape(prior.width(), prior.height(), view.photo_width,
-                     view.photo_height)) {
-    throw Failure("The depth map " + path + " has " +
-                  SizeText(prior.width(), prior.height()) +
-                  " pixels, which is not the shape of its photograph of " +
-                  SizeText(view.photo_width, view.photo_height) +
-                  "; make it of the photograph in the workspace");
-  }
-  return prior;
+  return ReadDepthFile(path, [&](int width, int height) {
+    CheckShapeOfPhoto("The depth map " + path, width, height, view.photo_width,
+                      view.photo_height,
+                      "make it of the photograph in the workspace");
+  });
 }
 
 // Warns, and returns nothing, if it does not fit.

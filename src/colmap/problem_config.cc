@@ -34,7 +34,8 @@ std::string FindName(const std::string& text, const IsName& is_name) {
 // that has such in it is one part.
 std::vector<std::string> SplitList(const std::string& line,
                                    const IsName& is_name) {
-  constexpr size_t kMaxNameSize = 4096;
+  // In a name, so that a line of nothing else takes no hours.
+  constexpr int kMaxSeparators = 16;
   const auto find_end = [&line](size_t begin) {
     return std::min(line.find_first_of(",;", begin), line.size());
   };
@@ -43,8 +44,8 @@ std::vector<std::string> SplitList(const std::string& line,
   while (begin <= line.size()) {
     size_t end = find_end(begin);
     std::string item = Trim(line.substr(begin, end - begin));
-    for (size_t stop = end; stop - begin < kMaxNameSize;
-         stop = find_end(stop + 1)) {
+    size_t stop = end;
+    for (int i = 0; i <= kMaxSeparators; ++i, stop = find_end(stop + 1)) {
       const std::string name =
           FindName(line.substr(begin, stop - begin), is_name);
       if (!name.empty()) {

@@ -1,7 +1,5 @@
 #include "src/colmap/undistorter_files.h"
 
-#include <FreeImage.h>
-
 #include <filesystem>
 #include <memory>
 #include <system_error>
@@ -43,16 +41,12 @@ void CheckUndistorterPaths(const std::string& image_path,
 }
 
 bool HasSizeOf(const colmap::Camera& camera, const std::string& path) {
-  FIBITMAP* header = LoadPicture(path, FIF_LOAD_NOPIXELS);
-  if (header == nullptr) {
-    PrintWarning("The image " + path + " cannot be read; it is left out");
-    return false;
-  }
-  const size_t width = FreeImage_GetWidth(header);
-  const size_t height = FreeImage_GetHeight(header);
-  FreeImage_Unload(header);
   try {
-    CheckPhotoSize(path, width, height, camera.Width(), camera.Height());
+    const auto size = ReadImageSize(path);
+    CheckPhotoSize(path, size.first, size.second, camera.Width(),
+                   camera.Height());
+  } catch (const ReadFailure&) {
+    throw;
   } catch (const Failure& error) {
     WarnOfPhoto(error);
     return false;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <memory>
 
 #include "mvs/image.h"
 #include "src/base/failure.h"
@@ -40,6 +41,11 @@ void NoteMessage(FREE_IMAGE_FORMAT, const char* message) {
   if (std::strstr(message, "remature end") != nullptr) {
     is_truncated = true;
   }
+}
+
+[[noreturn]] void FailToRead(const std::string& path) {
+  throw Failure("The image " + path +
+                " cannot be read; is it there, and is it a whole image?");
 }
 
 colmap::Bitmap ReadScaled(const SceneView& view, bool in_color) {
@@ -87,8 +93,41 @@ bool HaveSameShape(int width, int height, int other_width, int other_height) {
   return difference <= std::max({width, height, other_width, other_height});
 }
 
+void CheckShapeOfPhoto(const std::string& what, int width, int height,
+                       int photo_width, int photo_height,
+                       const std::string& advice) {
+  constexpr double kMaxScale = 16;
+  const std::string size = what + " has " + SizeText(width, height) + " pixels";
+  const std::string photo = SizeText(photo_width, photo_height);
+  if (!HaveSameShape(width, height, photo_width, photo_height)) {
+    throw Failure(size + ", which is not the shape of its photograph of " +
+                  photo + "; " + advice);
+  }
+  if (width > kMaxScale * photo_width) {
+    throw Failure(size +
+                  ", more than 16 times the width of its photograph "
+                  "of " +
+                  photo + "; make it smaller");
+  }
+}
+
 std::string SizeText(size_t width, size_t height) {
   return std::to_string(width) + "x" + std::to_string(height);
+}
+
+std::pair<size_t, size_t> ReadImageSize(const std::string& path) {
+  const FREE_IMAGE_FORMAT format = FreeImage_GetFileType(path.c_str());
+  const std::unique_ptr<FIBITMAP, decltype(&FreeImage_Unload)> header(
+      format == FIF_UNKNOWN
+          ? nullptr
+          : FreeImage_Load(format, path.c_str(), FIF_LOAD_NOPIXELS),
+      &FreeImage_Unload);
+  if (header == nullptr) {
+    // It tells whether it was reading that failed.
+    FreeImage_Unload(LoadPicture(path, FIF_LOAD_NOPIXELS));
+    FailToRead(path);
+  }
+  return {FreeImage_GetWidth(header.get()), FreeImage_GetHeight(header.get())};
 }
 
 colmap::Bitmap ReadBitmap(const std::string& path, bool in_color) {
@@ -96,17 +135,16 @@ colmap::Bitmap ReadBitmap(const std::string& path, bool in_color) {
   FreeImage_SetOutputMessage(&NoteMessage);
   colmap::Bitmap bitmap;
   if (!bitmap.Read(path, in_color) || is_truncated) {
-    throw Failure("The image " + path +
-                  " cannot be read; is it there, and is it a whole image?");
+    FailToRead(path);
   }
   return bitmap;
 }
 
 colmap::Bitmap ReadBitmap(const std::string& path, bool in_color, int width,
                           int height) {
-  colmap::Bitmap bitmap = ReadBitmap(path, in_color);
-  CheckPhotoSize(path, bitmap.Width(), bitmap.Height(), width, height);
-  return bitmap;
+  const auto size = ReadImageSize(path);
+  CheckPhotoSize(path, size.first, size.second, width, height);
+  return ReadBitmap(path, in_color);
 }
 
 void CheckPhotoSize(const std::string& path, size_t width, size_t height,

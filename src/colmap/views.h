@@ -37,11 +37,23 @@ std::vector<SceneView> SceneViews(const colmap::mvs::Model& model,
 // Whether images of these sizes have the same ratio of their sides, to a pixel.
 bool HaveSameShape(int width, int height, int other_width, int other_height);
 
+// Throws Failure unless what belongs to a photograph, such as a mask, has its
+// shape. It may be larger, but only so much: few bytes may hold any number of
+// pixels. what: begins the message, with the name of the file; advice: ends it.
+void CheckShapeOfPhoto(const std::string& what, int width, int height,
+                       int photo_width, int photo_height,
+                       const std::string& advice);
+
 // As in "640x480".
 std::string SizeText(size_t width, size_t height);
 
+// Width and height of an image in a file, without reading its pixels. Throws
+// Failure if that is missing or no image.
+std::pair<size_t, size_t> ReadImageSize(const std::string& path);
+
 // Reads a photograph. Throws Failure if it is missing or damaged, or, where a
-// size is given, if it has another than that of its camera.
+// size is given, if it has another than that of its camera: before its pixels
+// are read, as few bytes may hold any number of them.
 colmap::Bitmap ReadBitmap(const std::string& path, bool in_color);
 colmap::Bitmap ReadBitmap(const std::string& path, bool in_color, int width,
                           int height);

@@ -22,6 +22,10 @@ using Bytes = std::vector<char>;
   throw Failure("The depth map " + path + " " + what);
 }
 
+[[noreturn]] void FailAsDamaged(const std::string& path) {
+  Fail(path, "is damaged, or not of the format that its name says");
+}
+
 Bytes ReadBytes(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   Bytes bytes{std::istreambuf_iterator<char>(file),
@@ -54,6 +58,91 @@ void RenameExrChannel(Bytes* bytes) {
       (*bytes)[name + kChannelSize] == 0) {
     (*bytes)[name] = 'Y';
   }
+}
+
+// What the header of a file says; 0 if it makes no sense.
+struct HeaderSize {
+  int64_t width = 0;
+  int64_t height = 0;
+};
+
+HeaderSize PngSize(const Bytes& bytes) {
+  constexpr char kBegin[] = "\x89PNG\r\n\x1a\n\0\0\0\rIHDR";
+  constexpr size_t kBeginSize = sizeof(kBegin) - 1;
+  if (bytes.size() < kBeginSize + 8 ||
+      std::memcmp(bytes.data(), kBegin, kBeginSize) != 0) {
+    return {};
+  }
+  const auto number = [&bytes](size_t at) {
+    int64_t value = 0;
+    for (size_t i = at; i < at + 4; ++i) {
+      value = 256 * value + static_cast<uint8_t>(bytes[i]);
+    }
+    return value;
+  };
+  return {number(kBeginSize), number(kBeginSize + 4)};
+}
+
+HeaderSize PfmSize(const Bytes& bytes) {
+  constexpr size_t kMaxHeader = 100;
+  const std::string begin(bytes.data(), std::min(bytes.size(), kMaxHeader));
+  std::smatch size;
+  if (!std::regex_search(begin, size,
+                         std::regex("^P[fF]\\s+(\\d{1,9})\\s+(\\d{1,9})\\s"))) {
+    return {};
+  }
+  return {std::stoi(size[1]), std::stoi(size[2])};
+}
+
+// Of the attributes of the header, each with its name, its type and the number
+// of its bytes, the one that says where there are pixels. The last one counts.
+HeaderSize ExrSize(const Bytes& bytes) {
+  constexpr size_t kBegin = 8;  // Behind magic number and version.
+  HeaderSize size;
+  const auto text_at = [&bytes](size_t at) {
+    const auto begin = bytes.begin() + std::min(at, bytes.size());
+    return std::string(begin, std::find(begin, bytes.end(), '\0'));
+  };
+  for (size_t at = kBegin;;) {
+    const std::string name = text_at(at);
+    at += name.size() + 1;
+    at += text_at(at).size() + 1;
+    if (name.empty()) {
+      return size;
+    }
+    uint32_t num_bytes = 0;
+    if (at + sizeof(num_bytes) > bytes.size()) {
+      return {};
+    }
+    std::memcpy(&num_bytes, bytes.data() + at, sizeof(num_bytes));
+    at += sizeof(num_bytes);
+    // The library would take so many bytes before it reads them.
+    if (num_bytes > bytes.size() - at) {
+      return {};
+    }
+    int32_t box[4];  // Smallest x and y, largest x and y.
+    if (name == "dataWindow" && num_bytes == sizeof(box)) {
+      std::memcpy(box, bytes.data() + at, sizeof(box));
+      size = {int64_t{box[2]} - box[0] + 1, int64_t{box[3]} - box[1] + 1};
+    }
+    at += num_bytes;
+  }
+}
+
+HeaderSize SizeInHeader(const std::string& path, const Bytes& bytes) {
+  return EndsWith(path, ".png")   ? PngSize(bytes)
+         : EndsWith(path, ".pfm") ? PfmSize(bytes)
+                                  : ExrSize(bytes);
+}
+
+void CheckHeader(const std::string& path, const HeaderSize& size,
+                 const SizeCheck& check_size) {
+  constexpr int kMaxSide = 1000000;
+  if (size.width < 1 || size.height < 1 || size.width > kMaxSide ||
+      size.height > kMaxSide) {
+    FailAsDamaged(path);
+  }
+  check_size(static_cast<int>(size.width), static_cast<int>(size.height));
 }
 
 cv::Mat Decode(const Bytes& bytes) {
@@ -90,6 +179,13 @@ cv::Mat DecodeNpy(const std::string& path, const Bytes& bytes) {
   if (data > bytes.size()) {
     Fail(path, "is cut off");
   }
+  // As NumPy does: a search takes stack for what it passes over.
+  constexpr size_t kMaxHeader = 10000;
+  if (size > kMaxHeader) {
+    Fail(path, "has a header of " + std::to_string(size) +
+                   " bytes, and at most " + std::to_string(kMaxHeader) +
+                   " are for numbers alone");
+  }
   const std::string header(bytes.data() + begin, size);
   std::smatch type, shape;
   const std::regex any_type("'descr': *'<f([248])'");
@@ -116,15 +212,21 @@ cv::Mat DecodeNpy(const std::string& path, const Bytes& bytes) {
 
 }  // namespace
 
-Map<float> ReadDepthFile(const std::string& path) {
+Map<float> ReadDepthFile(const std::string& path, const SizeCheck& check_size) {
   Bytes bytes = ReadBytes(path);
-  if (EndsWith(path, ".exr")) {
-    RenameExrChannel(&bytes);
+  cv::Mat image;
+  if (EndsWith(path, ".npy")) {
+    image = DecodeNpy(path, bytes);  // No larger than the file.
+    check_size(image.cols, image.rows);
+  } else {
+    CheckHeader(path, SizeInHeader(path, bytes), check_size);
+    if (EndsWith(path, ".exr")) {
+      RenameExrChannel(&bytes);
+    }
+    image = Decode(bytes);
   }
-  const cv::Mat image =
-      EndsWith(path, ".npy") ? DecodeNpy(path, bytes) : Decode(bytes);
   if (image.empty()) {
-    Fail(path, "is damaged, or not of the format that its name says");
+    FailAsDamaged(path);
   }
   if (image.channels() != 1 || image.depth() == CV_8U) {
     Fail(path,

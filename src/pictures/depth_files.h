@@ -1,6 +1,7 @@
 #ifndef TAPA_SRC_PICTURES_DEPTH_FILES_H_
 #define TAPA_SRC_PICTURES_DEPTH_FILES_H_
 
+#include <functional>
 #include <string>
 
 #include "src/base/map.h"
@@ -15,7 +16,12 @@ constexpr const char* kDepthFileExtensions[] = {".exr", ".pfm", ".png", ".npy"};
 // with one channel of any letter (32 or 16 bits), PFM of either byte order, PNG
 // of 16 bits in grey, and NPY of floats (16, 32 or 64 bits), little-endian, of
 // the shape (height, width). Throws Failure that names the file.
-Map<float> ReadDepthFile(const std::string& path);
+//
+// check_size may throw, too. It is asked before pixels are
+// decoded, as few bytes may hold any number of them.
+using SizeCheck = std::function<void(int width, int height)>;
+Map<float> ReadDepthFile(
+    const std::string& path, const SizeCheck& check_size = [](int, int) {});
 
 }  // namespace tapa
 

@@ -66,6 +66,13 @@ TEST(ReadProblemConfig, RefusesNonsense) {
                Failure);
 }
 
+TEST(ReadProblemConfig, ReadsLongListsInTimeThatGrowsWithThem) {
+  // It took time that grew with the cube of their length.
+  const auto config =
+      Parse("a.jpg\nb.jpg" + std::string(100000, ',') + "c.jpg\n");
+  EXPECT_EQ(config[0].source_names, (Names{"b.jpg", "c.jpg"}));
+}
+
 TEST(ReadProblemConfig, SkipsByteOrderMark) {
   EXPECT_EQ(Parse("\xef\xbb\xbf"
                   "a.jpg\r\n__all__\r\n")[0]

@@ -371,7 +371,7 @@ class ImportTest(ConvertMapsCase):
         self.write_depth("a.exr", self.depth)
         for name in ("../a.jpg", "/a.jpg", "rig/../../a.jpg"):
             self.write("v/sparse/images.txt", f"1 1 0 0 0 0 0 0 1 {name}\n\n")
-            self.expect_error(self.import_words("in"), f"a photograph {name}, which leads out")
+            self.expect_error(self.import_words("in"), f"a photograph '{name}', which leads out")
         self.assertFalse(os.path.exists(self.path("v/stereo/a.jpg.geometric.bin")))
 
     def test_cameras_with_distortion(self):

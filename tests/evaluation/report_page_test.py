@@ -7,6 +7,7 @@ from helpers import ProgramTest, make_record
 from result_page_test import Addresses
 from evaluation import evaluate, files, record
 from evaluation.page import report_page
+from evaluation.processes import Failure
 
 
 class ReportPageTest(ProgramTest):
@@ -36,6 +37,25 @@ class ReportPageTest(ProgramTest):
         self.assertEqual(Addresses(text).found, [])
         self.assertNotIn("<b>", text)
         self.assertNotIn("<script>alert", text)
+
+    def test_links_are_addresses_and_no_programs(self):
+        text = self.write_page("# T\n\n[a](javascript:alert(1)) [b](&#106;avascript:alert(1)) "
+                               "[c](data:text/html,x) [d](other.md) [e](https://x.org/?a=b&c) "
+                               "[f](#part)")
+        for link in ('href="other.md"', 'href="https://x.org/?a=b&amp;c"', 'href="#part"'):
+            self.assertIn(link, text)
+        for part in ("avascript:", "data:text"):
+            self.assertNotIn(part, text)
+
+    def test_pictures_from_elsewhere_are_not_taken_in(self):
+        self.write("secret.png", "secret")
+        os.makedirs(self.path("page"))
+        os.symlink(self.path("secret.png"), self.path("page/link.png"))
+        for address in ("../secret.png", self.path("secret.png"), "link.png",
+                        "x/%2e%2e/%2e%2e/secret.png"):
+            with self.assertRaisesRegex(Failure, "not beside it"):
+                self.write_page(f"# T\n\n![a]({address})")
+        self.assertFalse(os.path.exists(self.path("page/report.html")))
 
     def test_points_of_each_method(self):
         for method in ("plain", "tapa"):

@@ -109,12 +109,16 @@ class CloudTest(TestCase):
     def test_consistency_graphs(self):
         path = self.path("a.bin")
         files.write_bytes(path, b"3&2&1&" + struct.pack("<9i", 2, 1, 2, 7, 8, 0, 0, 1, 9))
-        self.assertEqual(confidence.read_graph(path).tolist(), [[1, 0, 0], [0, 0, 2]])
+        self.assertEqual(confidence.read_graph(path, (2, 3)).tolist(), [[1, 0, 0], [0, 0, 2]])
         for damaged in (b"", b"3&2&", b"3&2&1&" + struct.pack("<3i", 9, 9, 0), b"3&2&1&\0",
                         b"3&2&1&" + struct.pack("<3i", 1, 1, -1)):
             files.write_bytes(path, damaged)
             with self.assertRaisesRegex(Failure, "a.bin"):
-                confidence.read_graph(path)
+                confidence.read_graph(path, (2, 3))
+        # A header of next to no bytes that asks for all memory.
+        files.write_bytes(path, b"999999&999999&1&")
+        with self.assertRaisesRegex(Failure, "a.bin has 999999x999999 pixels, but the map 3x2"):
+            confidence.read_graph(path, (2, 3))
 
 
 class PageCase(ProgramTest):

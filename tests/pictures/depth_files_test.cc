@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <climits>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -44,10 +45,16 @@ class DepthFiles : public testing::Test {
     return {std::istreambuf_iterator<char>(file), {}};
   }
 
-  // As text of the message; empty: there is none.
-  std::string ErrorOf(const std::string& path) const {
+  // As text of the message; empty: there is none. Takes no file with pixels
+  // beyond this number of rows or columns.
+  std::string ErrorOf(const std::string& path, int max_side = 1000) const {
     try {
-      ReadDepthFile(path);
+      ReadDepthFile(path, [&](int width, int height) {
+        if (width > max_side || height > max_side) {
+          throw Failure(path + " would be " + std::to_string(width) + "x" +
+                        std::to_string(height));
+        }
+      });
     } catch (const Failure& error) {
       EXPECT_NE(std::string(error.what()).find(path), std::string::npos);
       return error.what();
@@ -184,6 +191,59 @@ TEST_F(DepthFiles, RefusesDamagedFiles) {
     EXPECT_NE(ErrorOf(Write(name, "This is no depth map.\n")), "") << name;
   }
   EXPECT_NE(ErrorOf(Path("absent.exr")), "");
+}
+
+TEST_F(DepthFiles, AsksForTheSizeBeforePixelsAreDecoded) {
+  const cv::Mat values(2, 30, CV_16U, cv::Scalar(7));
+  cv::imwrite(Path("a.png"), values);
+  cv::Mat floats;
+  values.convertTo(floats, CV_32F);
+  for (const char* name : {"a.exr", "a.pfm"}) {
+    cv::imwrite(Path(name), floats);
+  }
+  Write("a.npy", Npy("<f4", "(2, 30)", std::string(240, '\0')));
+  for (const std::string name : {"a.exr", "a.pfm", "a.png", "a.npy"}) {
+    EXPECT_EQ(ErrorOf(Path(name), 30), "");
+    EXPECT_EQ(ErrorOf(Path(name), 29), Path(name) + " would be 30x2");
+    // Nothing of the pixels is needed to refuse them.
+    const std::string bytes = Read(name);
+    if (name != "a.npy") {
+      EXPECT_EQ(ErrorOf(Write(name, bytes.substr(0, bytes.size() - 20)), 29),
+                Path(name) + " would be 30x2");
+    }
+  }
+}
+
+TEST_F(DepthFiles, RefusesSizesThatNoMapHas) {
+  std::string png(
+      "\x89PNG\r\n\x1a\n\0\0\0\rIHDR\x7f\xff\xff\xff\x7f\xff\xff\xff\x10\0",
+      26);
+  EXPECT_NE(ErrorOf(Write("a.png", png), INT_MAX).find("damaged"),
+            std::string::npos);
+  EXPECT_NE(ErrorOf(Write("a.pfm", "Pf\n999999999 999999999\n-1\n"), INT_MAX)
+                .find("damaged"),
+            std::string::npos);
+}
+
+TEST_F(DepthFiles, RefusesExrAttributesThatAreLargerThanTheFile) {
+  cv::imwrite(Path("a.exr"), Floats());
+  std::string bytes = Read("a.exr");
+  const size_t type = bytes.find(std::string("chlist\0", 7));
+  ASSERT_NE(type, std::string::npos);
+  bytes.replace(type + 7, 4, "\x66\x66\x66\x66");  // 1.7 GB.
+  EXPECT_NE(ErrorOf(Write("a.exr", bytes)).find("damaged"), std::string::npos);
+}
+
+TEST_F(DepthFiles, RefusesLongHeaders) {
+  // Blanks that a search would have to pass over.
+  const std::string blanks(1000000, ' ');
+  std::string bytes = Npy("<f4", "(2, 3)", BytesOf(kValues), false, 2);
+  const size_t size = bytes.find("{");
+  bytes.insert(bytes.find("'<f4'"), blanks);
+  const uint32_t header =
+      static_cast<uint32_t>(bytes.size() - size - sizeof(float) * 6);
+  bytes.replace(8, 4, reinterpret_cast<const char*>(&header), 4);
+  EXPECT_NE(ErrorOf(Write("a.npy", bytes)).find("header"), std::string::npos);
 }
 
 TEST_F(DepthFiles, RefusesColoursAndBytes) {
