@@ -9,6 +9,7 @@
 
 #include "mvs/image.h"
 #include "src/base/failure.h"
+#include "src/colmap/photo_formats.h"
 #include "src/mvs/levels.h"
 #include "util/bitmap.h"
 
