@@ -10,7 +10,7 @@ here=$(cd "$(dirname "$0")" && pwd)
 "$here/build.sh" all
 cd "${BUILD_DIR:-$here/../build}"
 
-[[ "$*" == *full_size* || "$*" == *bare_root* || "$*" == *fuzz* ]] ||
+[[ "$*" == *full_size* || "$*" == *bare_root* || "$*" == *"-L fuzz"* ]] ||
   set -- -LE '^(full_size|bare_root|fuzz)$' "$@"
 rm -f tests.xml
 status=0

@@ -79,6 +79,8 @@ class Cluster:
             raise Failure(_last_error(lines) or f"the job that prepares the run has ended with "
                           f"status {status}; scripts/cluster --help says what it needs")
         steps = [tuple(map(int, match.groups())) for match in map(_STEP.match, lines) if match]
+        if not steps:
+            raise Failure(f"the job that prepares the run says of no steps; see {self.jobs.logs}")
         return [(step, num_views) for step, num_views in steps if num_views > 0]
 
     def read_log(self, name):

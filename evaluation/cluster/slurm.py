@@ -27,7 +27,7 @@ def submit(script, name, output, *options, after_ok=None, after_any=None):
 def submit_and_wait(script, name, output, *options, after_any=None):
     """The exit status of such a job. If this program is stopped, so is the job."""
     process = _start(script, name, output, ["--wait", *options], None, after_any)
-    job = process.stdout.readline().strip()
+    job = process.stdout.readline().strip().split(";")[0]
     try:
         error = process.communicate()[1].strip()
     except KeyboardInterrupt as interrupt:

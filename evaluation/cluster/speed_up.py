@@ -15,8 +15,8 @@ from .. import command_line, files
 from ..processes import Failure
 
 _VIEW = re.compile(r"\s*[\d.]+ %\s+\S+ to go  ((?:level \d+ )?(?:photometric|geometric)) "
-                   r"(\d+)/\d+ .+: [\d.]+ megapixels in ([\d.]+) s")
-_ELAPSED = re.compile(r"Elapsed time: ([\d.]+) \[minutes\]")
+                   r"(\d{1,12})/\d+ .+: [\d.]+ megapixels in (\d{1,12}(?:\.\d+)?) s")
+_ELAPSED = re.compile(r"Elapsed time: (\d{1,12}(?:\.\d+)?) \[minutes\]")
 
 
 class Times:

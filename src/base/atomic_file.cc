@@ -45,35 +45,58 @@ std::string TemporaryPath(const std::string& path) {
 }
 
 // Makes the file and locks it, so that others see that it is being written. One
-// of them may have removed it before it was locked.
+// of them may be about to remove it, whom this waits for, or have removed it
+// before it was locked.
 int OpenLocked(const std::string& path) {
   while (true) {
     const int file =
         open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
     struct stat status = {};
-    if (file < 0 || flock(file, LOCK_EX | LOCK_NB) != 0 ||
-        fstat(file, &status) != 0 || status.st_nlink > 0) {
+    if (file < 0 || flock(file, LOCK_EX) != 0 || fstat(file, &status) != 0 ||
+        status.st_nlink > 0) {
       return file;
     }
     close(file);
   }
 }
 
-// Whether a file with a temporary name is nobody's any more: the system unlocks
-// it when its process ends. Some shared file systems know locks of one machine
-// only, so that what other machines have written has to be old as well.
-bool IsStale(const std::string& path, bool is_of_this_host) {
-  constexpr time_t kOld = 24 * 3600;
-  const int file = open(path.c_str(), O_WRONLY | O_CLOEXEC);
-  if (file < 0) {
-    return false;
+// Whether a name is one of TemporaryPath: it ends with the mark, a machine, and
+// two numbers. mark: where the last mark begins.
+bool IsTemporary(const std::string& name, size_t mark) {
+  size_t end = name.size();
+  for (int i = 0; i < 2; ++i) {
+    const size_t dash = name.find_last_not_of("0123456789", end - 1);
+    if (dash == std::string::npos || name[dash] != '-' || dash + 1 == end ||
+        dash < mark + sizeof(kMark)) {
+      return false;
+    }
+    end = dash;
   }
+  return true;
+}
+
+// Removes a file with a temporary name if it is nobody's any more: the system
+// unlocks it when its process ends. Some shared file systems know locks of one
+// machine only, or none, so that what may be of another process there has to be
+// old as well.
+void RemoveIfStale(const std::string& path, bool is_of_this_host) {
+  constexpr time_t kOld = 24 * 3600;
+  // A stranger's workspace may have anything under such a name.
+  const int file =
+      open(path.c_str(), O_WRONLY | O_NONBLOCK | O_NOFOLLOW | O_CLOEXEC);
+  if (file < 0) {
+    return;
+  }
+  const bool is_locked = flock(file, LOCK_EX | LOCK_NB) != 0;
+  const bool knows_locks = !is_locked || errno == EWOULDBLOCK;
   struct stat status = {};
-  const bool is_stale =
-      flock(file, LOCK_EX | LOCK_NB) == 0 && fstat(file, &status) == 0 &&
-      (is_of_this_host || std::time(nullptr) - status.st_mtime > kOld);
+  if (fstat(file, &status) == 0 && S_ISREG(status.st_mode)) {
+    const bool is_old = std::time(nullptr) - status.st_mtime > kOld;
+    if (knows_locks ? !is_locked && (is_of_this_host || is_old) : is_old) {
+      unlink(path.c_str());
+    }
+  }
   close(file);
-  return is_stale;
 }
 
 // Removes the unfinished files of a folder that nobody writes any more, of all
@@ -87,13 +110,10 @@ void RemoveStale(const std::string& folder, const std::string& begin) {
   while (const dirent* entry = readdir(dir)) {
     const std::string name = entry->d_name;
     const size_t mark = name.rfind(kMark);
-    if (mark == std::string::npos ||
-        name.compare(0, begin.size(), begin) != 0) {
-      continue;
-    }
-    const std::string path = folder + "/" + name;
-    if (IsStale(path, name.compare(mark, own_mark.size(), own_mark) == 0)) {
-      unlink(path.c_str());
+    if (mark != std::string::npos && IsTemporary(name, mark) &&
+        name.compare(0, begin.size(), begin) == 0) {
+      RemoveIfStale(folder + "/" + name,
+                    name.compare(mark, own_mark.size(), own_mark) == 0);
     }
   }
   closedir(dir);
@@ -108,7 +128,7 @@ void RemoveStaleOf(const std::string& path) {
 }
 
 // Some mounts have no fsync; of them some tell when a file is closed what could
-// not be written. A copy of the descriptor is, so that the lock holds on.
+// not be written. So a copy is closed: closing the file itself would unlock it.
 bool Synchronize(int file) {
   if (fsync(file) != 0 && errno != EINVAL && errno != ENOSYS &&
       errno != ENOTSUP) {

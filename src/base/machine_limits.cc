@@ -1,5 +1,6 @@
 #include "src/base/machine_limits.h"
 
+#include <sched.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -70,9 +71,12 @@ void ApplyGroups(const std::string& top, std::string group,
 MachineLimits FindMachineLimits() {
   MachineLimits limits;
   limits.memory_bytes = 1.0 * sysconf(_SC_PHYS_PAGES) * sysconf(_SC_PAGESIZE);
-  // It counts the CPUs that the process is bound to.
   limits.num_cpus =
       std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  cpu_set_t bound;
+  if (sched_getaffinity(0, sizeof(bound), &bound) == 0) {
+    limits.num_cpus = std::clamp(CPU_COUNT(&bound), 1, limits.num_cpus);
+  }
   ApplyCgroupLimits("", &limits);
   rlimit space;
   if (getrlimit(RLIMIT_AS, &space) == 0 && space.rlim_cur != RLIM_INFINITY) {

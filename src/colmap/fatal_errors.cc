@@ -1,5 +1,6 @@
 #include "src/colmap/fatal_errors.h"
 
+#include <sqlite3.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -18,6 +19,7 @@ namespace {
 
 FatalErrors* innermost = nullptr;
 std::atomic<bool> has_failed{false};
+bool is_graphical = false;
 
 // What a message quotes of a file may have line breaks, and characters that
 // command a terminal.
@@ -136,9 +138,19 @@ void EndForDatabase(const char* error) {
   std::abort();  // LOG does not return.
 }
 
+void CheckDatabaseCommand(int result, const char* error) {
+  constexpr int kPrimaryCode = 0xff;
+  if (result != SQLITE_OK && (result & kPrimaryCode) != SQLITE_READONLY) {
+    EndForDatabase(error != nullptr ? error : sqlite3_errstr(result));
+  }
+}
+
+bool IsGraphical() { return is_graphical; }
+
 int RunCommand(const std::string& name,
                const std::function<int(int, char**)>& command, int argc,
                char** argv) {
+  is_graphical = name == "gui";
   const FatalErrors fatal_errors(name);
   const StepBar step_bar;
   try {

@@ -44,6 +44,15 @@ void PrintError(const std::string& text);
 // Ends the program for an error of the database of features and matches.
 [[noreturn]] void EndForDatabase(const char* error);
 
+// The same if a command to the database has failed, but not where it may only
+// be read: COLMAP brings each one that it opens up to date, and reads on if it
+// cannot. result: SQLite's code; error: its text or nullptr.
+void CheckDatabaseCommand(int result, const char* error);
+
+// Whether the program shows its graphical interface. An exception must not
+// leave what that calls.
+bool IsGraphical();
+
 // Runs a command of the program such that it never aborts: a failed check, and
 // an exception in any thread, become a line and exit status 1. On a terminal, a
 // bar shows how far it is (step_bar.h).

@@ -2,6 +2,8 @@
 
 #include <memory>
 
+#include "src/base/failure.h"
+#include "src/colmap/fatal_errors.h"
 #include "src/colmap/text_files.h"
 #include "util/misc.h"
 
@@ -12,7 +14,15 @@ FIBITMAP* LoadPicture(const std::string& path, int flags) {
     return nullptr;
   }
   // The library does not tell where reading failed.
-  std::string content = ReadWholeFile(path);
+  std::string content;
+  try {
+    content = ReadWholeFile(path);
+  } catch (const ReadFailure&) {
+    if (!IsGraphical()) {
+      throw;
+    }
+    return nullptr;
+  }
   const std::unique_ptr<FIMEMORY, decltype(&FreeImage_CloseMemory)> memory(
       FreeImage_OpenMemory(reinterpret_cast<BYTE*>(&content[0]),
                            static_cast<DWORD>(content.size())),

@@ -33,8 +33,8 @@ inline FIBITMAP* ReduceTo8Bits(FIBITMAP* bitmap) {
 }
 
 // Decodes a file. Returns nothing if it is no picture, or a damaged one. Throws
-// ReadFailure: a photograph that cannot be read is not to be left out, as those
-// are.
+// ReadFailure, but not in the graphical interface: a photograph that cannot be
+// read is not to be left out, as those are.
 FIBITMAP* LoadPicture(const std::string& path, int flags = 0);
 
 }  // namespace tapa

@@ -52,14 +52,22 @@ void WriteContents(const std::string& path, const Contents& contents) {
   file.Commit();
 }
 
-// What cannot be read may be a photograph. Throws Failure.
+// Throws Failure; in the graphical interface, prints it.
+void Fail(const std::string& text) {
+  if (!IsGraphical()) {
+    throw Failure(text);
+  }
+  PrintError(text);
+}
+
+// What cannot be read may be a photograph.
 void CheckReadable(const fs::path& path) {
   std::error_code ignored;
   std::ifstream file(path, std::ios::binary);
   if (fs::is_regular_file(path, ignored) &&
       (!file || (file.get(), file.bad()))) {
-    throw Failure("The file " + path.string() +
-                  " cannot be read: " + std::strerror(errno));
+    Fail("The file " + path.string() +
+         " cannot be read: " + std::strerror(errno));
   }
 }
 
@@ -85,8 +93,7 @@ std::vector<std::string> FindPhotographs(const std::string& image_path,
     }
   }
   if (error && error != std::errc::no_such_file_or_directory) {
-    throw Failure("The folder " + image_path +
-                  " cannot be read: " + error.message());
+    Fail("The folder " + image_path + " cannot be read: " + error.message());
   }
   std::sort(names.begin(), names.end());
   return names;
@@ -94,13 +101,13 @@ std::vector<std::string> FindPhotographs(const std::string& image_path,
 
 bool KeepPhotographs(const std::string& image_path,
                      const std::string& workspace_path) {
-  const std::vector<std::string> names =
-      FindPhotographs(image_path, workspace_path);
-  if (names.empty()) {
-    PrintError("There are no photographs that can be read in " + image_path);
-    return false;
-  }
   try {
+    const std::vector<std::string> names =
+        FindPhotographs(image_path, workspace_path);
+    if (names.empty()) {
+      PrintError("There are no photographs that can be read in " + image_path);
+      return false;
+    }
     const std::string path =
         colmap::JoinPaths(workspace_path, "photographs.txt");
     Contents contents = ReadContents(path);

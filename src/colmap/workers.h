@@ -28,7 +28,7 @@ std::vector<int> ParseGpuIndices(const std::string& gpu_index);
 
 // How many workers keep a GPU busy, 2 to 8: while a view is read or written, or
 // the CPU looks for its planes, the GPU sweeps others. A thread works for each
-// and another waits for the GPU: num_threads is shared out among the GPUs.
+// and another waits for the GPU: the CPUs are shared out among the GPUs.
 // Views are limited to about 32 megapixels together, with some 5 GB of memory,
 // and to less where half of the memory that the program may use is less.
 int WorkersPerGpu(const MachineLimits& limits, int num_gpus,

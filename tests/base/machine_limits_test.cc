@@ -1,10 +1,12 @@
 #include "src/base/machine_limits.h"
 
 #include <gtest/gtest.h>
+#include <sched.h>
 
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <thread>
 
 namespace tapa {
 namespace {
@@ -99,6 +101,19 @@ TEST_F(ControlGroups, DamagedFilesLimitNothing) {
   Write("/sys/fs/cgroup/job/memory.max", "-7");
   Write("/sys/fs/cgroup/job/cpu.max", "100000 0");
   ExpectLimits(1000, 8);
+}
+
+// As taskset and batch systems bind it.
+TEST(MachineLimits, CountsTheCpusThatTheThreadIsBoundTo) {
+  int num_cpus = 0;
+  std::thread([&] {
+    cpu_set_t one;
+    CPU_ZERO(&one);
+    CPU_SET(sched_getcpu(), &one);
+    ASSERT_EQ(sched_setaffinity(0, sizeof(one), &one), 0);
+    num_cpus = FindMachineLimits().num_cpus;
+  }).join();
+  EXPECT_EQ(num_cpus, 1);
 }
 
 TEST(MachineLimits, OfThisMachine) {

@@ -193,7 +193,7 @@ TEST(OptionsRecord, RemovesWhatADeadProcessHasLeft) {
   char host[256] = "";
   gethostname(host, sizeof(host) - 1);
   std::ofstream(
-      folder.Path(std::string("options.txt.part-") + host + "-99999999"))
+      folder.Path(std::string("options.txt.part-") + host + "-99999999-0"))
       << "x";
   WriteOptionsRecord(folder.Path("options.txt"), {{"a", "1"}});
   EXPECT_EQ(folder.NumFiles(), 1);

@@ -107,6 +107,13 @@ class Incomplete(tiny.TestCase):
         image = self.path("images", "view1.png")
         shutil.copy(photo, image)
         os.truncate(image, os.path.getsize(photo) // 2)
+        tiny.make_model(self.path("sparse"), self.names, separate_cameras=True)
+        cameras = self.path("sparse", "cameras.txt")
+        with open(cameras) as file:
+            lines = file.read().splitlines()
+        lines[1] = lines[1].replace(" 96 64 ", " 1536 1024 ")
+        with open(cameras, "w") as file:
+            file.write("\n".join(lines) + "\n")
         self.expect_error("view1.png", "read")
 
     def test_image_size_is_not_the_cameras(self):

@@ -145,7 +145,7 @@ class PartsTest(tiny.TestCase):
             if "views to compute" in line:
                 break
         for step in (-1, 0):
-            self.assert_one_error(self.part(step), "Another run of stereo computes in")
+            self.assert_one_error(self.part(step), "Another run is at work in")
         self.assertIsNone(worker.poll(), "it ended before the others began")
 
     def test_what_was_not_prepared(self):

@@ -551,6 +551,58 @@ TEST(Sweep, FilterKeepsWhatIsConsistentWithEnoughViews) {
   EXPECT_LT(num_kept, 40 * 48);
 }
 
+// One lane goes another way than many, whose functions it can run, too.
+TEST(Sweep, DrawsTheSameViewsWithAnyNumberOfLanes) {
+  for (const int num_sources : {1, 3, 16}) {
+    SyntheticOptions scene_options;
+    scene_options.num_sources = num_sources;
+    const SyntheticPlane scene(scene_options);
+    const CameraTable cameras(scene.problem());
+    const SourceCameras views = cameras.sources();
+    const RefCamera camera = cameras.reference();
+    std::vector<float> cdf(views.padded_count);
+    std::vector<float> num_drawn(views.padded_count);
+    std::vector<float> uniform(kDrawBlock);
+    std::vector<int> order(views.padded_count);
+    PixelScratch s = {};
+    s.cdf = cdf.data();
+    s.num_drawn = num_drawn.data();
+    s.order = order.data();
+    s.uniform = uniform.data();
+    SweepParams params;
+    params.measure_all = true;
+    std::mt19937 random(num_sources);
+    for (int i = 0; i < 1000; ++i) {
+      params.num_samples = 1 + i % 100;
+      std::vector<float> steps(views.padded_count, kNeverDrawn);
+      float sum = 0;
+      for (int m = 0; m < num_sources; ++m) {
+        // Some views have no chance.
+        sum += std::max(0.0f,
+                        std::uniform_real_distribution<float>(-1, 1)(random));
+        steps[m] = sum;
+      }
+      for (int m = 0; m < num_sources; ++m) {
+        steps[m] = sum > 0 ? steps[m] / sum : (m + 1.0f) / num_sources;
+      }
+      const PixelContext pixel = {
+          params, camera,          views,         s,           0, 0,
+          Vec3(), Random(1, i, 0), DepthNormal(), PixelGuide()};
+      cdf = steps;
+      const int num_distinct = DrawViewsOneByOne(pixel);
+      const std::vector<float> counts = num_drawn;
+      const std::vector<int> ranks = order;
+      cdf = steps;
+      CountDraws<SerialLanes>(pixel);
+      ASSERT_EQ(OrderViews<SerialLanes>(num_sources, s), num_distinct);
+      for (int m = 0; m < num_sources; ++m) {
+        ASSERT_EQ(num_drawn[m], counts[m]);
+        ASSERT_EQ(order[m], ranks[m]);
+      }
+    }
+  }
+}
+
 TEST(Sweep, DrawsViewsInProportionToTheirProbability) {
   const SyntheticPlane scene{SyntheticOptions()};
   const CameraTable cameras(scene.problem());

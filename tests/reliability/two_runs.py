@@ -33,7 +33,8 @@ def _twice(program, delay, report):
 def _fuse_meanwhile(program, delay, report):
     folder = program.fresh()
     stereo = programs.start(program.command, folder)
-    programs.time.sleep(delay)
+    # Until it has the lock fusion may have it.
+    programs.time.sleep(max(delay, 0.2 * program.duration))
     status, output = programs.run(programs.fusion_command(), folder)
     faults = trials.faults_of_ending(status, output, is_told)
     if status == 0 and stereo.poll() is None:

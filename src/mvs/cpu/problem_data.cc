@@ -13,9 +13,12 @@ ProblemData::ProblemData(const Options& options, const Problem& problem)
       cameras(problem) {
   for (const View& view : problem.sources) {
     sources.emplace_back(*view.image);
-    if (options.geom_consistency && view.depth != nullptr) {
-      source_depths.push_back(
-          {view.depth->data(), view.depth->width(), view.depth->height()});
+    if (options.geom_consistency) {
+      source_depths.push_back(view.depth == nullptr
+                                  ? DepthView{nullptr, 0, 0}
+                                  : DepthView{view.depth->data(),
+                                              view.depth->width(),
+                                              view.depth->height()});
     }
   }
 }

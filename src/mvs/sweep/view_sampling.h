@@ -69,8 +69,9 @@ TAPA_INLINE int DrawViewsOneByOne(const PixelContext& p) {
     }
     // Rounding can leave the last step below 1.
     if (m < views.count) {
-      s.order[num_distinct] = m;
-      num_distinct += s.num_drawn[m] == 0.0f ? 1 : 0;
+      if (s.num_drawn[m] == 0.0f) {
+        s.order[num_distinct++] = m;
+      }
       s.num_drawn[m] += 1.0f;
     }
   }
