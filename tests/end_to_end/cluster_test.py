@@ -58,7 +58,7 @@ class ClusterTest(tiny.TestCase):
 
     def run_script(self, *arguments, **options):
         process = self.start(*arguments, **options)
-        output, _ = process.communicate(timeout=120)
+        output, _ = process.communicate(timeout=600)
         return subprocess.CompletedProcess([], process.returncode, output)
 
     def log(self):
@@ -131,7 +131,7 @@ class ClusterTest(tiny.TestCase):
         with open(os.path.join(marker, "node")) as file:
             node = file.read().strip()
         self.slurm.kill_node(node)
-        output, _ = process.communicate(timeout=200)
+        output, _ = process.communicate(timeout=600)
         self.assert_complete(subprocess.CompletedProcess([], process.returncode, output),
                              **options)
         other, = set(small_slurm.NODES) - {node}
@@ -147,7 +147,7 @@ class ClusterTest(tiny.TestCase):
             self.assertIsNone(process.poll(), "the job did not run")
             time.sleep(0.05)
         process.send_signal(signal.SIGINT)
-        output, _ = process.communicate(timeout=30)
+        output, _ = process.communicate(timeout=120)
         self.assertEqual(process.returncode, 130, output)
         self.assertFalse(os.path.exists(os.path.join(self.workspace, "cluster")))
         while self.slurm.run("squeue", "-h").strip():

@@ -13,7 +13,7 @@ import time
 
 PROGRAMS = ["munged", "slurmctld", "slurmd", "sbatch", "scontrol", "squeue", "sinfo", "scancel"]
 NODES = ["one", "two"]
-TIMEOUT = 30
+TIMEOUT = 120
 
 CONFIG = """\
 ClusterName=small
