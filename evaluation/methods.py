@@ -32,6 +32,7 @@ for _name, _label, _options in (
         ("one-level", "one level", _stereo(num_levels=1)),
         ("no-hysteresis", "no hysteresis", _stereo(hysteresis=0)),
         ("all", "all hypotheses", _stereo(try_all=1)),
+        ("random", "a random change in every sweep", _stereo(random_share=1)),
         ("measure-all", "all views measured", _stereo(measure_all=1)),
         ("4-views", "4 views drawn", _stereo(num_samples=4)),
         ("8-views", "8 views drawn", _stereo(num_samples=8)),

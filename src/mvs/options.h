@@ -141,10 +141,11 @@ void VisitTapaOptions(Options* options, const Visitor& visit) {
 }
 
 // How much is tried before an estimate is kept, where COLMAP has no choice.
-// What each is for stands in VisitSearchOptions. COLMAP's own: true, true and
-// 0.
+// What each is for stands in VisitSearchOptions. COLMAP's own: true, any, true
+// and 0.
 struct SearchOptions {
   bool try_all = false;
+  double random_share = 0.25;
   bool measure_all = false;
   double hysteresis = 0.12;
 };
@@ -158,6 +159,12 @@ void VisitSearchOptions(Options* options, const Visitor& visit) {
                     "drawn, and the plane of the pixel before even where it is "
                     "the pixel's own"},
         &options->try_all);
+  visit(OptionEntry{"random_share",
+                    "Share of the sweeps in which a pixel tries a random "
+                    "change, where it starts from a coarser level or another "
+                    "pass; with try_all it tries all three in all sweeps",
+                    OptionRange::From(0, 1)},
+        &options->random_share);
   visit(OptionEntry{"measure_all",
                     "Measure what a sweep chooses in all source views; "
                     "otherwise those that were not drawn keep what they saw "

@@ -17,6 +17,7 @@ Schedule::Schedule(const Options& options, int num_sources, bool has_start)
   // From random estimates little is known of which views see a pixel.
   common_.measure_all = options.search.measure_all || !has_start;
   if (has_start) {
+    common_.random_share = static_cast<float>(options.search.random_share);
     common_.hysteresis = static_cast<float>(options.search.hysteresis);
   }
   common_.window_radius = static_cast<float>(options.window_radius);

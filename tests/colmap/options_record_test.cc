@@ -56,13 +56,14 @@ TEST(OptionsOfMaps, HasWhatChangesMaps) {
                            "num_levels",
                            "first_perturbation",
                            "try_all",
+                           "random_share",
                            "measure_all",
                            "hysteresis",
                            "tapa",
                            "rays"}) {
     EXPECT_EQ(values.count(name), 1) << name;
   }
-  EXPECT_EQ(values.size(), 27) << "Is an option missing in the list above?";
+  EXPECT_EQ(values.size(), 28) << "Is an option missing in the list above?";
 }
 
 TEST(OptionsOfMaps, LeavesOutWhatNothingReads) {

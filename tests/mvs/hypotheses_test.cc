@@ -80,6 +80,20 @@ TEST(Hypotheses, PerturbedNormalsStayUnitCloseAndVisible) {
   }
 }
 
+TEST(Hypotheses, RandomOnesAreTriedInTheirShareOfSweeps) {
+  const int kDraws = 30000;
+  for (const float share : {1.0f, 0.25f, 0.0f}) {
+    int count[kNumHypotheses] = {};
+    for (int i = 0; i < kDraws; ++i) {
+      ++count[DrawRandomHypothesis(Random(3, i, 0), share)];
+    }
+    for (const int hypothesis : {kRandom, kRandomNormal, kRandomDepth}) {
+      EXPECT_NEAR(count[hypothesis] / double{kDraws}, share / 3, 0.01);
+    }
+    EXPECT_EQ(count[kCurrent] == 0, share == 1.0f);
+  }
+}
+
 TEST(Hypotheses, PerturbedDepthStaysInItsRange) {
   float lowest = 1;
   float highest = 1;

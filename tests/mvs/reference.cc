@@ -445,9 +445,11 @@ void Sweep(const Options& options, const Problem& problem,
         minus = MinusWeight(t, guide.weight_range);
       }
 
-      // Of the three random ones, at 2, 3 and 4.
+      // Of the three random ones, at 2, 3 and 4, or none.
+      const float share = static_cast<float>(options.search.random_share);
+      const float draw = random.Uniform(kDrawHypothesis);
       const size_t only_random =
-          2 + static_cast<size_t>(3 * random.Uniform(kDrawHypothesis));
+          draw < share ? 2 + static_cast<size_t>(3 * draw / share) : 0;
       size_t best = 0;
       double best_cost = std::numeric_limits<double>::infinity();
       for (size_t k = 0; k < planes.size(); ++k) {

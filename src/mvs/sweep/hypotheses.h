@@ -110,12 +110,11 @@ TAPA_INLINE bool IsVisible(const DepthNormal& hypothesis, const Vec3& ray) {
   return hypothesis.depth > 0.0f && Dot(hypothesis.normal, ray) < 0.0f;
 }
 
-// Whether a pixel tries one of the random hypotheses in this sweep: all, or one
-// that is drawn.
-TAPA_INLINE bool TriesRandom(const PixelContext& p, int hypothesis) {
-  return p.params.try_all ||
-         hypothesis ==
-             kRandom + static_cast<int>(3 * p.random.Uniform(kDrawHypothesis));
+// Which of the random hypotheses a pixel tries in this sweep: one of the three
+// or, but for the share `share` of sweeps, none, which is kCurrent.
+TAPA_INLINE int DrawRandomHypothesis(const Random& random, float share) {
+  const float draw = random.Uniform(kDrawHypothesis);
+  return draw < share ? kRandom + static_cast<int>(3 * draw / share) : kCurrent;
 }
 
 // Whether two estimates of a pixel are the same in all that can be measured:
@@ -138,12 +137,15 @@ TAPA_INLINE void MakeHypotheses(const PixelContext& p,
   constexpr float kLostCost = 0.5f;
   const float perturbation = drawn_cost > kLostCost ? p.params.lost_perturbation
                                                     : p.params.perturbation;
+  const int drawn = DrawRandomHypothesis(p.random, p.params.random_share);
+  const bool both = p.params.try_all || drawn == kRandom;
+  const bool depth_alone = p.params.try_all || drawn == kRandomDepth;
+  const bool normal_alone = p.params.try_all || drawn == kRandomNormal;
   const float random_depth =
-      PerturbDepth(p.random, perturbation, p.current.depth);
+      both || depth_alone
+          ? PerturbDepth(p.random, perturbation, p.current.depth)
+          : 0.0f;
   // A normal of zero faces nobody: such a hypothesis only lends its depth.
-  const bool both = TriesRandom(p, kRandom);
-  const bool depth_alone = TriesRandom(p, kRandomDepth);
-  const bool normal_alone = TriesRandom(p, kRandomNormal);
   const Vec3 random_normal =
       both || normal_alone
           ? PerturbNormal(p.random, perturbation, p.current.normal, p.ray)
@@ -155,8 +157,7 @@ TAPA_INLINE void MakeHypotheses(const PixelContext& p,
   if (!p.params.try_all && IsSame(propagated, p.current)) {
     propagated = DepthNormal();
   }
-  hypotheses[kRandom] = {both || depth_alone ? random_depth : 0.0f,
-                         both ? random_normal : Vec3()};
+  hypotheses[kRandom] = {random_depth, both ? random_normal : Vec3()};
   hypotheses[kRandomNormal] = {p.current.depth,
                                normal_alone ? random_normal : Vec3()};
   hypotheses[kRandomDepth] = {random_depth,

@@ -24,6 +24,7 @@ struct SweepParams {
   int num_samples = 3;
   // As in SearchOptions.
   bool try_all = false;
+  float random_share = 1;
   bool measure_all = false;
   // By how much the cost per drawn view must fall before an estimate without
   // any texture is given up, see Hysteresis.
