@@ -50,8 +50,15 @@ for _name, _label, _option in (("weights", "weights", "texture_weighting"),
         _ALL[f"{_base}-{_name}"] = (f"{_ALL[_base][0]} without {_label}", [
             *_ALL[_base][1], *_stereo(**{"tapa_" + _option: 0})])
 
-_ALL["tapa-sightings"] = ("TAPA without sightings",
-                          _TAPA + _stereo(tapa_completion_sightings=0))
+# Completion without one of its rules: at these values a rule decides nothing.
+for _name, _label, _option, _value in (
+        ("completion", "without completion", "completion", 0),
+        ("sightings", "without sightings", "completion_sightings", 0),
+        ("agreement", "planes whatever lies on them", "completion_agreement", 0),
+        ("radius", "agreement of whole superpixels", "completion_radius", 1),
+        ("texture", "planes for nothing that stayed", "completion_textureness", 0),
+        ("fill-share", "fill from any pixel", "completion_fill_share", 0)):
+    _ALL["tapa-" + _name] = ("TAPA, " + _label, _TAPA + _stereo(**{"tapa_" + _option: _value}))
 
 METHODS = {name: options for name, (_, options) in _ALL.items()}
 

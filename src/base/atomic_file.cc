@@ -14,6 +14,9 @@
 #include <cstring>
 #include <ctime>
 #include <filesystem>
+#include <map>
+#include <mutex>
+#include <vector>
 
 #include "src/base/failure.h"
 
@@ -99,31 +102,59 @@ void RemoveIfStale(const std::string& path, bool is_of_this_host) {
   close(file);
 }
 
-// Removes the unfinished files of a folder that nobody writes any more, of all
-// names that begin with this.
-void RemoveStale(const std::string& folder, const std::string& begin) {
+// The names of a folder's unfinished files.
+std::vector<std::string> ListTemporaries(const std::string& folder) {
+  std::vector<std::string> names;
   DIR* dir = opendir(folder.c_str());
   if (dir == nullptr) {
-    return;
+    return names;
   }
-  const std::string own_mark = kMark + HostName() + "-";
   while (const dirent* entry = readdir(dir)) {
     const std::string name = entry->d_name;
     const size_t mark = name.rfind(kMark);
-    if (mark != std::string::npos && IsTemporary(name, mark) &&
-        name.compare(0, begin.size(), begin) == 0) {
-      RemoveIfStale(folder + "/" + name,
-                    name.compare(mark, own_mark.size(), own_mark) == 0);
+    if (mark != std::string::npos && IsTemporary(name, mark)) {
+      names.push_back(name);
     }
   }
   closedir(dir);
+  return names;
+}
+
+// The same as they were when this process first asked: listing a folder for
+// each of its files takes a time that grows with the square of their number.
+// What is left there later the next process finds.
+std::vector<std::string> FirstTemporaries(const std::string& folder) {
+  static std::mutex mutex;
+  static std::map<std::string, std::vector<std::string>> found;
+  const std::lock_guard<std::mutex> lock(mutex);
+  const auto [entry, is_new] = found.try_emplace(folder);
+  if (is_new) {
+    entry->second = ListTemporaries(folder);
+  }
+  return entry->second;
+}
+
+// Removes those of these unfinished files that nobody writes any more, of all
+// names that begin with this.
+void RemoveStale(const std::string& folder,
+                 const std::vector<std::string>& names,
+                 const std::string& begin) {
+  const std::string own_mark = kMark + HostName() + "-";
+  for (const std::string& name : names) {
+    if (name.compare(0, begin.size(), begin) == 0) {
+      RemoveIfStale(
+          folder + "/" + name,
+          name.compare(name.rfind(kMark), own_mark.size(), own_mark) == 0);
+    }
+  }
 }
 
 // Of the file itself, from runs that were cut off.
 void RemoveStaleOf(const std::string& path) {
   const size_t name = path.rfind('/') + 1;
+  const std::string folder = name == 0 ? "." : path.substr(0, name);
   constexpr size_t kRoom = 128;  // Enough for any mark.
-  RemoveStale(name == 0 ? "." : path.substr(0, name),
+  RemoveStale(folder, FirstTemporaries(folder),
               CutName(path.substr(name) + kMark, kRoom));
 }
 
@@ -200,7 +231,7 @@ void AtomicFile::Fail() {
 }
 
 void RemoveStaleTemporaries(const std::string& folder) {
-  RemoveStale(folder, "");
+  RemoveStale(folder, ListTemporaries(folder), "");
 }
 
 void PrepareFolder(const std::string& path, const std::string& contents) {

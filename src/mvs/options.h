@@ -145,7 +145,7 @@ void VisitTapaOptions(Options* options, const Visitor& visit) {
 // and 0.
 struct SearchOptions {
   bool try_all = false;
-  double random_share = 0.25;
+  double random_share = 0.5;
   bool measure_all = false;
   double hysteresis = 0.12;
 };

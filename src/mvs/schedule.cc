@@ -9,6 +9,7 @@ namespace tapa {
 
 Schedule::Schedule(const Options& options, int num_sources, bool has_start)
     : num_iterations_(options.num_iterations),
+      has_start_(has_start),
       first_perturbation_(options.first_perturbation),
       checks_consistency_(ChecksConsistency(options)) {
   common_.seed = options.seed;
@@ -56,6 +57,9 @@ SweepParams Schedule::At(int index) const {
   params.perturbation = static_cast<float>(first_perturbation_ * shrinkage);
   params.lost_perturbation = static_cast<float>(shrinkage);
   params.prev_prob_weight = static_cast<float>(index) / num_sweeps();
+  // Planes stay the same in an iteration: what lost to a pixel's estimate hardly
+  // ever wins in the next sweep.
+  params.try_planes = common_.try_all || !has_start_ || sweep % 2 == 1;
   params.check_consistency = checks_consistency_ && index + 1 == num_sweeps();
   return params;
 }

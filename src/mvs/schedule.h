@@ -30,6 +30,7 @@ class Schedule {
 
  private:
   const int num_iterations_;
+  const bool has_start_;
   const double first_perturbation_;
   const bool checks_consistency_;
   // What all sweeps have in common.

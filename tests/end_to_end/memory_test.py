@@ -11,26 +11,26 @@ import tiny_workspace as tiny
 BASELINE = 0.1
 DEPTH = 4.0
 MEGABYTES_PER_VIEW = 0.05
-REACH = 0.5  # How far from a camera's place the points are that it sees.
+REACH = 5  # The points that a camera sees are within so many places of cameras.
 
 
-def make_model(path, names, width, height):
+def make_model(path, names, width, height, baseline):
     """A row of cameras before a wall; points are seen from near by only, as in a real scene."""
     os.makedirs(path)
     with open(os.path.join(path, "cameras.txt"), "w") as file:
         file.write("1 PINHOLE %d %d %d %d %r %r\n" % (
             width, height, width, width, width / 2, height / 2))
-    points = [(i * BASELINE / 2, 0.2 * (i % 5 - 2)) for i in range(2 * len(names))]
+    points = [(i * baseline / 2, 0.2 * (i % 5 - 2)) for i in range(2 * len(names))]
     tracks = [[] for _ in points]
     with open(os.path.join(path, "images.txt"), "w") as file:
         for i, name in enumerate(names):
-            first = max(0, int(2 * i - 2 * REACH / BASELINE))
-            seen = range(first, min(len(points), int(2 * i + 2 * REACH / BASELINE) + 1))
-            file.write("%d 1 0 0 0 %r 0 0 1 %s\n" % (i + 1, -i * BASELINE, name))
+            first = max(0, 2 * i - 2 * REACH)
+            seen = range(first, min(len(points), 2 * i + 2 * REACH + 1))
+            file.write("%d 1 0 0 0 %r 0 0 1 %s\n" % (i + 1, -i * baseline, name))
             for number, j in enumerate(seen):
                 tracks[j].append("%d %d" % (i + 1, number))
                 x, y = points[j]
-                file.write("%r %r %d " % (width * (x - i * BASELINE) / DEPTH + width / 2,
+                file.write("%r %r %d " % (width * (x - i * baseline) / DEPTH + width / 2,
                                           width * y / DEPTH + height / 2, j + 1))
             file.write("\n")
     with open(os.path.join(path, "points3D.txt"), "w") as file:
@@ -38,14 +38,14 @@ def make_model(path, names, width, height):
             file.write("%d %r %r %r 9 9 9 0.1 %s\n" % (j + 1, x, y, DEPTH, " ".join(tracks[j])))
 
 
-def make_workspace(path, num_views, width, height):
+def make_workspace(path, num_views, width, height, baseline=BASELINE):
     """All views share the files of a few, which hold more than the program could tell apart."""
     names = ["view%04d.png" % i for i in range(num_views)]
     images = os.path.join(path, "images")
     tiny.make_images(images, ["a.png"], width, height)
     for name in names:
         os.link(os.path.join(images, "a.png"), os.path.join(images, name))
-    make_model(os.path.join(path, "sparse"), names, width, height)
+    make_model(os.path.join(path, "sparse"), names, width, height, baseline)
     tiny.make_config(path, names, sources="__auto__, 4")
     return names
 
@@ -61,6 +61,35 @@ def write_maps(workspace, names, width, height):
             file.write(b"%d&%d&%d&" % (width, height, len(values) // count // 4) + values)
         for name in names[1:]:
             os.link(first, tiny.map_path(workspace, name, kind))
+
+
+class ControlGroup:
+    """A group of processes with a limit on their memory, as containers and batch jobs make.
+
+    Raises OSError where there are none, or where this process may not make one."""
+
+    def __init__(self, limit):
+        with open("/proc/self/cgroup") as file:
+            groups = dict(line.rstrip("\n").split(":", 2)[1:] for line in file)
+        version_1 = "memory" in groups
+        parent = ("/sys/fs/cgroup/memory" + groups["memory"] if version_1 else
+                  "/sys/fs/cgroup" + groups[""])
+        self.path = os.path.join(parent, "tapa_memory_test_%d" % os.getpid())
+        os.mkdir(self.path)
+        try:
+            name = "memory.limit_in_bytes" if version_1 else "memory.max"
+            with open(os.path.join(self.path, name), "r+") as file:
+                file.write(str(limit))
+        except OSError:
+            self.remove()
+            raise
+
+    def enter(self):
+        with open(os.path.join(self.path, "cgroup.procs"), "w") as file:
+            file.write(str(os.getpid()))
+
+    def remove(self):
+        os.rmdir(self.path)
 
 
 def peak_megabytes(result):
@@ -127,16 +156,26 @@ class MemoryTest(tiny.TestCase):
         # All photographs would be 173 MB.
         self.assert_bounded(compute)
 
-    def test_less_than_the_machine_has(self):
-        """As for a job: what is sized by the machine's memory is sized by its limit."""
+    def check_limit(self, limit, take_limit):
+        """What is sized by the machine's memory is sized by the limit."""
         tiny.make_workspace(self.folder, num_views=3)
-        limit = 3 << 30
-        result = tiny.run(
-            tiny.stereo_command(self.folder),
-            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)))
+        result = tiny.run(tiny.stereo_command(self.folder), preexec_fn=take_limit)
         self.assert_success(result)
         self.assertIn(" MB of %d MB that this process may use" % (limit >> 20), result.stdout)
         self.assertTrue(result.stdout.splitlines()[-1].startswith("Peak memory: "))
+
+    def test_limit_of_a_shell(self):
+        limit = 3 << 30
+        self.check_limit(limit, lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)))
+
+    def test_limit_of_a_container(self):
+        limit = 1 << 30
+        try:
+            group = ControlGroup(limit)
+        except OSError as error:
+            self.skipTest("no control group can be made here: %s" % error)
+        self.addCleanup(group.remove)
+        self.check_limit(limit, group.enter)
 
 
 if __name__ == "__main__":

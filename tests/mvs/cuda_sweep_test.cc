@@ -214,13 +214,14 @@ void ExpectAgrees(const CudaCase& c, bool exact, const Outcome& actual,
   // of a pixel, spreads to the next pixels of the line; with a single view ties
   // are frequent.
   const double share = c.num_sources == 1 ? 0.99 : 0.994;
+  // Where it spreads, the messages along the line are others, too.
   EXPECT_GE(ShareOfSameChoices(actual.estimate, expected.estimate),
             exact ? share : 0.95);
   EXPECT_GE(ShareWithin(actual.costs, expected.costs, kCostTolerance),
             exact ? share - 0.003 : 0.5);
   EXPECT_GE(ShareWithin(actual.estimate.selection_prob,
                         expected.estimate.selection_prob, kProbTolerance),
-            exact ? 0.99 : 0.5);
+            exact ? share - 0.01 : 0.5);
 }
 
 class CudaSweepTest : public testing::TestWithParam<CudaCase> {};

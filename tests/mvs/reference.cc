@@ -455,6 +455,7 @@ void Sweep(const Options& options, const Problem& problem,
       for (size_t k = 0; k < planes.size(); ++k) {
         if (!options.search.try_all &&
             ((k >= 2 && k <= 4 && k != only_random) ||
+             (k >= kFirstPlanar && index % 2 == 0) ||
              (k == 1 && IsSame(planes[1], current)))) {
           continue;
         }

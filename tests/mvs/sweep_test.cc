@@ -243,10 +243,14 @@ TEST_P(SweepTest, MakesTheChoicesOfTheReference) {
   EXPECT_GE(num_same, kShareSame * depth.size());
   EXPECT_GE(num_same_choices, kShareSame * depth.size());
   EXPECT_GT(num_changed, 0.25 * depth.size());
-  for (const Hypothesis planar : {kDepthPrior, kFinePlane, kCoarsePlane}) {
-    EXPECT_EQ(num_chosen[planar] > 0.03 * depth.size(), GetParam().guided)
-        << num_chosen[planar];
-  }
+  // Every other sweep tries no planes of superpixels.
+  const bool tries_planes = GetParam().guided && GetParam().index % 2 == 1;
+  const auto is_chosen = [&](Hypothesis hypothesis) {
+    return num_chosen[hypothesis] > 0.03 * depth.size();
+  };
+  EXPECT_EQ(is_chosen(kDepthPrior), GetParam().guided);
+  EXPECT_EQ(is_chosen(kFinePlane), tries_planes);
+  EXPECT_EQ(is_chosen(kCoarsePlane), tries_planes);
 
   // Selection probabilities as the reference derives them from the engine's
   // costs before and after the sweep.
@@ -428,7 +432,7 @@ TEST(Sweep, RangeOfDepthsIncludesItsEnds) {
     guide.fine.planes = {{{0, 0, -1}, distance}};
     guide.fine.index = Map<uint16_t>(48, 40, uint16_t{0});
     SweepState state = MakeState(data, depth, normal, &scratch);
-    RunSweep(data, options, 0, guide, &state, &scratch);
+    RunSweep(data, options, 1, guide, &state, &scratch);
     const bool in_range = distance >= 2 && distance <= 8;
     EXPECT_EQ(state.chosen.At(20, 24) == kFinePlane, in_range) << distance;
   }
@@ -458,7 +462,7 @@ void ExpectPlanesToWinOnAFlatPatch(bool geometric) {
   // 0: no weights.
   for (const double min_textureness :
        {0.0, 0.5, TapaOptions().min_textureness}) {
-    for (const int index : {0, 1, 6, 11}) {
+    for (const int index : {1, 3, 7, 11}) {
       SCOPED_TRACE(testing::Message()
                    << "textureness " << min_textureness << ", sweep " << index);
       std::mt19937 random(index);

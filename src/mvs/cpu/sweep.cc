@@ -198,7 +198,7 @@ HWY_ATTR bool SweepOneLine(const ProblemData& data, const SweepParams& params,
                                   ray,
                                   Random(params.seed, pixel, params.index),
                                   state->At(pixel),
-                                  guide.At(pixel, ray)};
+                                  guide.At(pixel, ray, params.try_planes)};
     const Choice choice = SweepPixel<SerialLanes>(context, previous, sources);
     StorePixel(s, pixel, views, state);
     StoreChoice(choice, pixel, mask, mask_bytes, state);

@@ -144,7 +144,7 @@ TAPA_INLINE PreviousPixel SweepTaskPixel(const SweepTask& task,
       ray,
       Random(task.params.seed, pixel, task.params.index),
       Unpack(task.estimates[pixel]),
-      task.guide.At(pixel, ray)};
+      task.guide.At(pixel, ray, task.params.try_planes)};
   const Choice choice = SweepPixel<Lanes>(context, previous, sources);
   StorePixel<Lanes>(task, pixel, choice, s, flags);
   // The next pixel overwrites what lanes still read.

@@ -43,7 +43,9 @@ struct SweepGuide {
   // Depth from elsewhere; nullptr: none of any pixel.
   const PackedDepthNormal* depth_prior = nullptr;
 
-  TAPA_INLINE PixelGuide At(size_t pixel, const Vec3& ray) const {
+  // with_planes: whether the planes are hypotheses, too.
+  TAPA_INLINE PixelGuide At(size_t pixel, const Vec3& ray,
+                            bool with_planes) const {
     PixelGuide guide;
     if (textureness != nullptr) {
       guide.weights = TextureWeights::FromTextureness(
@@ -52,8 +54,10 @@ struct SweepGuide {
     if (depth_prior != nullptr) {
       guide.depth_prior = Unpack(depth_prior[pixel]);
     }
-    guide.fine = HypothesisOf(fine, pixel, ray);
-    guide.coarse = HypothesisOf(coarse, pixel, ray);
+    if (with_planes) {
+      guide.fine = HypothesisOf(fine, pixel, ray);
+      guide.coarse = HypothesisOf(coarse, pixel, ray);
+    }
     return guide;
   }
 

@@ -25,6 +25,8 @@ struct SweepParams {
   // As in SearchOptions.
   bool try_all = false;
   float random_share = 1;
+  // Whether this sweep tries the planes of superpixels.
+  bool try_planes = true;
   bool measure_all = false;
   // By how much the cost per drawn view must fall before an estimate without
   // any texture is given up, see Hysteresis.
