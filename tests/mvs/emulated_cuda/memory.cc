@@ -3,6 +3,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstring>
 #include <vector>
 
@@ -104,7 +105,7 @@ cudaError_t cudaMemcpy(void* to, const void* from, size_t bytes,
     state->default_stream.Add(
         [to, data = std::vector<char>(begin, begin + bytes)] {
           const MemoryAccess access;
-          std::memcpy(to, data.data(), data.size());
+          std::copy(data.begin(), data.end(), static_cast<char*>(to));
         });
     return cudaSuccess;
   });

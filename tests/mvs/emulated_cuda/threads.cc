@@ -1,5 +1,7 @@
 #include "tests/mvs/emulated_cuda/threads.h"
 
+#include <sanitizer/asan_interface.h>
+
 #include <algorithm>
 #include <array>
 #include <boost/context/fiber.hpp>
@@ -117,14 +119,31 @@ int LevelOf(unsigned mask) {
                          " waits with a mask that is no group of its own");
 }
 
+constexpr size_t kStackBytes = 128 * 1024;
+
+// AddressSanitizer marks the surroundings of variables. Of frames that an
+// exception leaves behind it takes the marks away on stacks of threads only,
+// and whoever runs there next would stumble over them. Does so from the frame
+// of a fiber's first function on.
+void ForgetFramesBelow([[maybe_unused]] char* frame) {
+  // That function's own frame and what Boost has above it are less.
+  constexpr size_t kAbove = 8 * 1024;
+  ASAN_UNPOISON_MEMORY_REGION(frame - (kStackBytes - kAbove),
+                              kStackBytes - kAbove);
+}
+
 fiber MakeFiber(Block* block, const std::function<void()>& body) {
   // One pool of stacks for all blocks.
-  static thread_local boost::context::pooled_fixedsize_stack stacks(128 * 1024);
+  static thread_local boost::context::pooled_fixedsize_stack stacks(
+      kStackBytes);
   return fiber(std::allocator_arg, stacks, [block, &body](fiber&& scheduler) {
+    char* const frame = static_cast<char*>(__builtin_frame_address(0));
+    ForgetFramesBelow(frame);
     block->scheduler = std::move(scheduler);
     try {
       body();
     } catch (const boost::context::detail::forced_unwind&) {
+      ForgetFramesBelow(frame);
       throw;
     } catch (...) {
       block->error = std::current_exception();
