@@ -8,7 +8,8 @@ namespace tapa {
 
 // Writes a file beside its final name and renames it when it is complete. Until
 // then it is locked, so that what a process left that was killed is known, and
-// removed by the next one that writes the same file.
+// removed by the next one that writes the same file. (A folder is looked into
+// once by a process, when it first writes there.)
 class AtomicFile {
  public:
   // Throws Failure if the file cannot be made.

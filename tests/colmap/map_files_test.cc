@@ -214,9 +214,10 @@ TEST(AtomicFile, StaleTemporariesAreRemoved) {
 }
 
 TEST(AtomicFile, RemovesWhatAnotherRunHasLeftOfItself) {
-  const TestFolder folder;
   for (const std::string& name :
        {std::string("a.bin"), std::string(250, 'n')}) {
+    // A process looks into a folder when it first writes there.
+    const TestFolder folder;
     const std::string left = name.substr(0, 200) + OwnMark();
     std::ofstream(folder.Path(left)) << "x";
     std::ofstream(folder.Path("other" + OwnMark())) << "x";

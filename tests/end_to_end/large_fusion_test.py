@@ -18,6 +18,7 @@ NUM_VIEWS = 50
 WIDTH, HEIGHT = 3000, 2000
 BASELINE = 0.4  # A tenth of the depth: neighbours share nine tenths of what they see.
 MAX_MEGABYTES = 2000
+MAX_SECONDS = 1800  # On a slow machine.
 
 
 class LargeFusionTest(tiny.TestCase):
@@ -26,7 +27,7 @@ class LargeFusionTest(tiny.TestCase):
         begin = time.monotonic()
         result = tiny.run([
             tiny.COLMAP, "stereo_fusion", "--workspace_path", self.folder, "--output_path",
-            self.path(name + ".ply"), *options])
+            self.path(name + ".ply"), *options], timeout=MAX_SECONDS)
         seconds = time.monotonic() - begin
         self.assert_success(result)
         megabytes = memory_test.peak_megabytes(result)

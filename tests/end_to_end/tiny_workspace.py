@@ -268,11 +268,11 @@ def stereo_command(workspace, arguments=(), **options):
     return command + list(arguments)
 
 
-def run(command, **options):
+def run(command, timeout=300, **options):
     """Runs a command. Returns its result with all output as text."""
     return subprocess.run(command, stdout=subprocess.PIPE,
                           stderr=subprocess.STDOUT, text=True,
-                          stdin=subprocess.DEVNULL, timeout=300, **options)
+                          stdin=subprocess.DEVNULL, timeout=timeout, **options)
 
 
 def run_stereo(workspace, arguments=(), **options):
