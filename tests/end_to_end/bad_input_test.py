@@ -238,6 +238,7 @@ def _limit_file_size(limit):
 
 class Shortage(tiny.TestCase):
 
+    @unittest.skipIf("ASAN_OPTIONS" in os.environ, "AddressSanitizer needs more addresses")
     def test_makes_do_with_fewer_threads(self):
         # The stacks of that many threads do not fit.
         tiny.make_workspace(self.folder)
