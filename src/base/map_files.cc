@@ -1,9 +1,14 @@
 #include "src/base/map_files.h"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <cerrno>
+#include <charconv>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
+#include <string_view>
 
 #include "src/base/atomic_file.h"
 #include "src/base/failure.h"
@@ -15,23 +20,23 @@ static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__,
 namespace tapa {
 namespace {
 
-// A file whose header has been read.
-struct OpenMap {
-  std::ifstream file;
-  int width = 0;
-  int height = 0;
-};
+// Longer headers are not valid: three numbers of up to seven digits.
+constexpr size_t kMaxHeaderSize = 24;
 
-// Reads a positive number and the '&' behind it. Returns 0 if there is none.
-int ReadHeaderNumber(std::istream* file) {
+// Takes a positive number and the '&' behind it off the front of a header.
+// Returns 0 if there is none.
+int TakeNumber(std::string_view* header) {
   constexpr int kMax = 1000000;
   int value = 0;
-  int digit = file->get();
-  while (digit >= '0' && digit <= '9' && value <= kMax) {
-    value = 10 * value + (digit - '0');
-    digit = file->get();
+  const auto [end, error] =
+      std::from_chars(header->data(), header->data() + header->size(), value);
+  const size_t length = static_cast<size_t>(end - header->data());
+  if (error != std::errc() || length == header->size() || *end != '&' ||
+      value <= 0 || value > kMax) {
+    return 0;
   }
-  return digit == '&' && value <= kMax ? value : 0;
+  header->remove_prefix(length + 1);
+  return value;
 }
 
 int NumChannels(MapKind kind) { return kind == MapKind::kNormal ? 3 : 1; }
@@ -43,60 +48,6 @@ std::string SizeText(int width, int height, int channels) {
 
 [[noreturn]] void Fail(const std::string& path, const std::string& what) {
   throw Failure(path + " " + what);
-}
-
-[[noreturn]] void FailToRead(const std::string& path) {
-  Fail(path, std::string("cannot be read: ") + std::strerror(errno));
-}
-
-// Opens a valid file of any size.
-OpenMap Open(const std::string& path, MapKind kind) {
-  OpenMap map;
-  std::error_code ignored;
-  map.file.open(path, std::ios::binary);
-  if (!map.file || !std::filesystem::is_regular_file(path, ignored)) {
-    throw Failure("cannot open " + path);
-  }
-  map.width = ReadHeaderNumber(&map.file);
-  map.height = ReadHeaderNumber(&map.file);
-  const int found_channels = ReadHeaderNumber(&map.file);
-  if (map.file.bad()) {
-    FailToRead(path);
-  }
-  if (map.width == 0 || map.height == 0 || found_channels == 0) {
-    Fail(path, "is not a COLMAP depth or normal map");
-  }
-  const int channels = NumChannels(kind);
-  const std::string size = SizeText(map.width, map.height, found_channels);
-  if (found_channels != channels) {
-    Fail(path, "has the size " + size + ", but " + std::to_string(channels) +
-                   (channels == 1 ? " channel is" : " channels are") +
-                   " expected");
-  }
-  const std::streamoff begin = map.file.tellg();
-  map.file.seekg(0, std::ios::end);
-  const uint64_t bytes = static_cast<uint64_t>(map.file.tellg() - begin);
-  map.file.seekg(begin);
-  const uint64_t needed =
-      sizeof(float) * static_cast<uint64_t>(map.width) * map.height * channels;
-  if (kind != MapKind::kConsistencyGraph && bytes != needed) {
-    Fail(path, (bytes < needed ? "is truncated: " : "is too long: ") +
-                   std::to_string(bytes) + " bytes of values where the size " +
-                   size + " needs " + std::to_string(needed));
-  }
-  if (bytes % sizeof(int32_t) != 0) {
-    Fail(path, "is truncated");
-  }
-  return map;
-}
-
-// Reads `count` values, in the order of the file.
-void ReadValues(const std::string& path, OpenMap* map, float* values,
-                size_t count) {
-  if (!map->file.read(reinterpret_cast<char*>(values),
-                      static_cast<std::streamsize>(count * sizeof(float)))) {
-    FailToRead(path);
-  }
 }
 
 void WriteFile(const std::string& path, int width, int height, int channels,
@@ -115,38 +66,120 @@ void WriteFile(const std::string& path, int width, int height, int channels,
 
 }  // namespace
 
-void CheckMapFile(const std::string& path, MapKind kind) { Open(path, kind); }
+MapRows::MapRows(const std::string& path, MapKind kind)
+    : path_(path), file_(open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
+  struct stat status;
+  if (file_ < 0 || fstat(file_, &status) != 0 || !S_ISREG(status.st_mode)) {
+    close(file_);
+    throw Failure("cannot open " + path);
+  }
+  try {
+    Check(kind, static_cast<uint64_t>(status.st_size));
+  } catch (...) {
+    close(file_);
+    throw;
+  }
+}
+
+MapRows::~MapRows() { close(file_); }
+
+void MapRows::Check(MapKind kind, uint64_t file_size) {
+  char first[kMaxHeaderSize];
+  std::string_view header(first, ReadBytes(first, kMaxHeaderSize, 0));
+  const size_t num_read = header.size();
+  width_ = TakeNumber(&header);
+  height_ = TakeNumber(&header);
+  const int found_channels = TakeNumber(&header);
+  if (width_ == 0 || height_ == 0 || found_channels == 0) {
+    Fail(path_, "is not a COLMAP depth or normal map");
+  }
+  const int channels = NumChannels(kind);
+  const std::string size = SizeText(width_, height_, found_channels);
+  if (found_channels != channels) {
+    Fail(path_, "has the size " + size + ", but " + std::to_string(channels) +
+                    (channels == 1 ? " channel is" : " channels are") +
+                    " expected");
+  }
+  begin_ = num_read - header.size();
+  const uint64_t bytes = file_size - begin_;
+  const uint64_t needed =
+      sizeof(float) * static_cast<uint64_t>(width_) * height_ * channels;
+  if (kind != MapKind::kConsistencyGraph && bytes != needed) {
+    Fail(path_, (bytes < needed ? "is truncated: " : "is too long: ") +
+                    std::to_string(bytes) + " bytes of values where the size " +
+                    size + " needs " + std::to_string(needed));
+  }
+  if (bytes % sizeof(int32_t) != 0) {
+    Fail(path_, "is truncated");
+  }
+}
+
+size_t MapRows::ReadBytes(void* bytes, size_t size, uint64_t at) const {
+  size_t done = 0;
+  while (done < size) {
+    const ssize_t num_read = pread(file_, static_cast<char*>(bytes) + done,
+                                   size - done, static_cast<off_t>(at + done));
+    if (num_read == 0) {
+      break;
+    }
+    if (num_read > 0) {
+      done += static_cast<size_t>(num_read);
+    } else if (errno != EINTR) {
+      Fail(path_, std::string("cannot be read: ") + std::strerror(errno));
+    }
+  }
+  return done;
+}
+
+void MapRows::Read(int channel, int row, float* values) const {
+  const uint64_t index =
+      (static_cast<uint64_t>(channel) * height_ + row) * width_;
+  const size_t size = sizeof(float) * static_cast<size_t>(width_);
+  if (ReadBytes(values, size, begin_ + sizeof(float) * index) != size) {
+    Fail(path_, "was cut off while it was read");
+  }
+}
+
+void CheckMapFile(const std::string& path, MapKind kind) {
+  MapRows(path, kind);
+}
 
 void CheckMapFile(const std::string& path, MapKind kind, int width,
                   int height) {
-  const OpenMap map = Open(path, kind);
-  if (map.width != width || map.height != height) {
+  const MapRows rows(path, kind);
+  if (rows.width() != width || rows.height() != height) {
     const int channels = NumChannels(kind);
-    Fail(path, "has the size " + SizeText(map.width, map.height, channels) +
-                   ", but " + SizeText(width, height, channels) + " is needed");
+    Fail(path, "has the size " +
+                   SizeText(rows.width(), rows.height(), channels) + ", but " +
+                   SizeText(width, height, channels) + " is needed");
   }
 }
 
 std::pair<int, int> ReadMapSize(const std::string& path, MapKind kind) {
-  const OpenMap map = Open(path, kind);
-  return {map.width, map.height};
+  const MapRows rows(path, kind);
+  return {rows.width(), rows.height()};
 }
 
 Map<float> ReadDepthMap(const std::string& path) {
-  OpenMap file = Open(path, MapKind::kDepth);
-  Map<float> map(file.width, file.height);
-  ReadValues(path, &file, map.data(), map.size());
+  const MapRows rows(path, MapKind::kDepth);
+  Map<float> map(rows.width(), rows.height());
+  for (int row = 0; row < map.height(); ++row) {
+    rows.Read(0, row, map.Row(row));
+  }
   return map;
 }
 
 Map<Vec3> ReadNormalMap(const std::string& path) {
-  OpenMap file = Open(path, MapKind::kNormal);
-  Map<Vec3> map(file.width, file.height);
-  std::vector<float> values(3 * map.size());
-  ReadValues(path, &file, values.data(), values.size());
-  for (size_t i = 0; i < map.size(); ++i) {
-    map.data()[i] = {values[i], values[map.size() + i],
-                     values[2 * map.size() + i]};
+  const MapRows rows(path, MapKind::kNormal);
+  Map<Vec3> map(rows.width(), rows.height());
+  std::vector<float> x(map.width()), y(map.width()), z(map.width());
+  for (int row = 0; row < map.height(); ++row) {
+    rows.Read(0, row, x.data());
+    rows.Read(1, row, y.data());
+    rows.Read(2, row, z.data());
+    for (int col = 0; col < map.width(); ++col) {
+      map.At(row, col) = {x[col], y[col], z[col]};
+    }
   }
   return map;
 }

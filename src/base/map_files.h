@@ -1,6 +1,7 @@
 #ifndef TAPA_SRC_BASE_MAP_FILES_H_
 #define TAPA_SRC_BASE_MAP_FILES_H_
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -29,6 +30,38 @@ void CheckMapFile(const std::string& path, MapKind kind, int width, int height);
 
 // Width and height of a valid file. Throws Failure as CheckMapFile does.
 std::pair<int, int> ReadMapSize(const std::string& path, MapKind kind);
+
+// A valid file whose rows are read when they are asked for, so that a large map
+// needs no memory as a whole.
+class MapRows {
+ public:
+  // Throws Failure as CheckMapFile does.
+  MapRows(const std::string& path, MapKind kind);
+  ~MapRows();
+  MapRows(const MapRows&) = delete;
+  MapRows& operator=(const MapRows&) = delete;
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+
+  // The values of a row in one channel, as they stand in the file; `values` has
+  // room for `width()`. Threads may read at the same time. Throws Failure if
+  // the file cannot be read.
+  void Read(int channel, int row, float* values) const;
+
+ private:
+  // Reads the header and compares it with the length of the file.
+  void Check(MapKind kind, uint64_t file_size);
+  // Reads up to `size` bytes; fewer where the file ends. Returns how many.
+  size_t ReadBytes(void* bytes, size_t size, uint64_t at) const;
+
+  const std::string path_;
+  int file_ = -1;
+  int width_ = 0;
+  int height_ = 0;
+  // Where the values begin.
+  uint64_t begin_ = 0;
+};
 
 // Read a valid file of any size. Throw Failure as CheckMapFile does. Values are
 // returned as they stand in the file.

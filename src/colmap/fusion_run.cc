@@ -128,7 +128,7 @@ int FuseWorkspace(const colmap::mvs::StereoFusionOptions& options,
         FusionLocation(workspace_path, workspace_format, pmvs_option_name),
         FusionPass(input_type));
     auto fused = std::make_shared<FusedCloud>();
-    fused->max_bytes_in_memory = FusionSource::CacheBytes(options);
+    fused->max_bytes_in_memory = FusionSource::PointBytes(options);
     fused->folder = workspace_path;
     if (!FuseAndReport(options, &source, stopped, fused.get())) {
       std::cout << "Stopped; nothing was written." << std::endl;

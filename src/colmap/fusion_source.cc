@@ -109,24 +109,29 @@ FusionProblem FusionSource::Problem() {
 
 SurfaceMap FusionSource::ReadSurface(int index) const {
   const SceneView& view = views_[index];
-  const Map<float> depth =
-      ReadDepthMap(location_.MapPath(MapKind::kDepth, view.name, pass_, 0));
+  const MapRows depths(location_.MapPath(MapKind::kDepth, view.name, pass_, 0),
+                       MapKind::kDepth);
   const std::string normal_path =
       location_.MapPath(MapKind::kNormal, view.name, pass_, 0);
-  CheckMapFile(normal_path, MapKind::kNormal, depth.width(), depth.height());
-  const Map<Vec3> normals = ReadNormalMap(normal_path);
+  const int width = depths.width();
+  CheckMapFile(normal_path, MapKind::kNormal, width, depths.height());
+  const MapRows normals(normal_path, MapKind::kNormal);
   SurfaceMap surface(view.width, view.height);
+  std::vector<float> depth(width), nx(width), ny(width), nz(width);
   // Of a map that is reduced, the pixels closest to the centres.
-  const double x = static_cast<double>(depth.width()) / view.width;
-  const double y = static_cast<double>(depth.height()) / view.height;
+  const double x = static_cast<double>(width) / view.width;
+  const double y = static_cast<double>(depths.height()) / view.height;
   for (int row = 0; row < view.height; ++row) {
     const int from_row = static_cast<int>((row + 0.5) * y);
+    depths.Read(0, from_row, depth.data());
+    normals.Read(0, from_row, nx.data());
+    normals.Read(1, from_row, ny.data());
+    normals.Read(2, from_row, nz.data());
     for (int col = 0; col < view.width; ++col) {
-      const int from_col = static_cast<int>((col + 0.5) * x);
-      const Vec3& normal = normals.At(from_row, from_col);
-      SurfacePixel& pixel = surface.At(row, col);
-      pixel.normal = PackNormal(normal);
-      pixel.depth = Dot(normal, normal) > 0 ? depth.At(from_row, from_col) : 0;
+      const int c = static_cast<int>((col + 0.5) * x);
+      const Vec3 normal{nx[c], ny[c], nz[c]};
+      surface.At(row, col) = {Dot(normal, normal) > 0 ? depth[c] : 0,
+                              PackNormal(normal)};
     }
   }
   const Map<uint8_t> mask = ReadMask(options_.mask_path, view);

@@ -22,8 +22,11 @@ class FusionSource {
   FusionSource(const colmap::mvs::StereoFusionOptions& options,
                const WorkspaceLocation& location, Pass pass);
 
-  // What its maps, and what is made of them, may take of the memory each.
+  // What its maps may take of the memory, and the points made of them.
   static size_t CacheBytes(const colmap::mvs::StereoFusionOptions& options);
+  static size_t PointBytes(const colmap::mvs::StereoFusionOptions& options) {
+    return CacheBytes(options) / 4;
+  }
 
   // It reads maps when they are needed, from this object. What is wrong with
   // them throws Failure there.

@@ -91,24 +91,39 @@ class Fusion {
     return is_done;
   }
 
-  bool FuseView(int index, FusedView* fused) {
-    const FusionView& view = problem_.views[index];
-    const auto whole_surface = problem_.read_surface(index);
-    CheckSize(view, *whole_surface);
-    const SurfaceMap surface = WithoutUsed(*whole_surface, *used_[index]);
-    ViewEvidence evidence(view.width, view.height);
-    std::vector<ViewPair> pairs;
-    for (const int other : view.neighbors) {
+  // Asks the neighbours of a view, each pair a view and one of them. Every
+  // other view asks them from the last one on: those whose maps were read last
+  // are then asked first, and are still in memory where not all fit.
+  bool AskNeighbors(const FusionView& view, const SurfaceMap& surface,
+                    const std::vector<ViewPair>& pairs,
+                    ViewEvidence* evidence) {
+    const int count = static_cast<int>(view.neighbors.size());
+    for (int i = 0; i < count; ++i) {
+      const int n = asks_backwards_ ? count - 1 - i : i;
+      const int other = view.neighbors[n];
       const auto other_surface = problem_.read_surface(other);
       CheckSize(problem_.views[other], *other_surface);
-      const int number = static_cast<int>(pairs.size());
-      pairs.emplace_back(view.camera, problem_.views[other].camera, limits_);
       if (!ForRows(view, 1, [&](int begin, int end) {
-            AskNeighbor(pairs.back(), surface, *other_surface, number, begin,
-                        end, &evidence);
+            AskNeighbor(pairs[n], surface, *other_surface, n, begin, end,
+                        evidence);
           })) {
         return false;
       }
+    }
+    asks_backwards_ = !asks_backwards_;
+    return true;
+  }
+
+  bool FuseView(int index, FusedView* fused) {
+    const FusionView& view = problem_.views[index];
+    const SurfaceMap surface = WithoutUsed(index);
+    ViewEvidence evidence(view.width, view.height);
+    std::vector<ViewPair> pairs;
+    for (const int other : view.neighbors) {
+      pairs.emplace_back(view.camera, problem_.views[other].camera, limits_);
+    }
+    if (!AskNeighbors(view, surface, pairs, &evidence)) {
+      return false;
     }
 
     const int radius = static_cast<int>(
@@ -142,14 +157,20 @@ class Fusion {
       count += row.size();
     }
     fused->points.reserve(count);
-    for (const auto& row : rows) {
+    for (auto& row : rows) {
       fused->points.insert(fused->points.end(), row.begin(), row.end());
+      std::vector<FusedPoint>().swap(row);  // Not all of them twice in memory.
     }
     return true;
   }
 
-  // Pixels that points of other views show already need not be looked at.
-  static SurfaceMap WithoutUsed(SurfaceMap surface, const UsedPixels& used) {
+  // The maps of a view less the pixels that points of other views show already,
+  // which need not be looked at.
+  SurfaceMap WithoutUsed(int index) const {
+    const auto whole_surface = problem_.read_surface(index);
+    CheckSize(problem_.views[index], *whole_surface);
+    SurfaceMap surface = *whole_surface;
+    const UsedPixels& used = *used_[index];
     for (int row = 0; row < surface.height(); ++row) {
       for (int col = 0; col < surface.width(); ++col) {
         if (used.IsMarked(row, col)) {
@@ -226,6 +247,7 @@ class Fusion {
   std::vector<std::unique_ptr<UsedPixels>> used_;
   double total_work_ = 0;
   double done_work_ = 0;
+  bool asks_backwards_ = false;
 };
 
 }  // namespace

@@ -19,7 +19,7 @@ struct FusionOptions {
   double threshold = 0.2;
   double spread = 0.1;
   int num_views = 20;
-  double cache_size = 0.7;
+  double cache_size = 0.9;
 };
 
 // The table of these options: calls visit(entry, pointer to the member) for
@@ -65,8 +65,8 @@ void VisitFusionOptions(Options* options, const Visitor& visit) {
          "points with it",
          Range::From(1, 64));
   option("agreement_cache_size", &o.cache_size,
-         "Gigabytes of maps to keep in memory, and of points; other maps are "
-         "read when needed, other points are kept in a file",
+         "Gigabytes of maps to keep in memory, and four times those of points; "
+         "other maps are read when needed, other points are kept in a file",
          Range::Positive());
 }
 

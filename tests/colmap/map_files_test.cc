@@ -81,6 +81,35 @@ TEST(MapFiles, ReadsWhatColmapWrites) {
   EXPECT_EQ(ReadNormalMap(folder.Path("normal.bin")).At(1, 0).z, -1);
 }
 
+TEST(MapFiles, ReadsRowsOfEachChannel) {
+  const TestFolder folder;
+  const std::string path = folder.Path("a.bin");
+  WriteNormalMap(path, SomeNormals());
+  const MapRows rows(path, MapKind::kNormal);
+  ASSERT_EQ(rows.width(), 3);
+  ASSERT_EQ(rows.height(), 2);
+  float values[3][3];
+  for (int channel = 0; channel < 3; ++channel) {
+    rows.Read(channel, 1, values[channel]);
+  }
+  for (int col = 0; col < 3; ++col) {
+    EXPECT_EQ(values[0][col], SomeNormals().At(1, col).x);
+    EXPECT_EQ(values[1][col], SomeNormals().At(1, col).y);
+    EXPECT_EQ(values[2][col], SomeNormals().At(1, col).z);
+  }
+}
+
+TEST(MapFiles, NoticesThatAFileIsCutOffWhileItIsRead) {
+  const TestFolder folder;
+  const std::string path = folder.Path("a.bin");
+  WriteDepthMap(path, SomeDepths());
+  const MapRows rows(path, MapKind::kDepth);
+  Truncate(path, 4);
+  float values[3];
+  rows.Read(0, 0, values);
+  EXPECT_THROW(rows.Read(0, 1, values), Failure);
+}
+
 TEST(MapFiles, ColmapReadsGraph) {
   const TestFolder folder;
   WriteGraph(folder.Path("a.bin"), 3, 2, {2, 1, 2, 40, 50});

@@ -1,4 +1,4 @@
-"""Fusion of 50 views of 6 megapixels: its memory, and its time beside COLMAP's rule.
+"""Fusion of 50 views of 6 megapixels is faster than COLMAP's rule, in little memory.
 
     COLMAP=build/bin/colmap python3 tests/end_to_end/large_fusion_test.py
 
@@ -33,14 +33,15 @@ class LargeFusionTest(tiny.TestCase):
         megabytes = memory_test.peak_megabytes(result)
         points = int(re.search(r"Number of fused points: (\d+)", result.stdout)[1])
         print("%s: %.0f s, %d MB, %d points" % (name, seconds, megabytes, points), flush=True)
-        return megabytes
+        return seconds, megabytes
 
     def test_time_and_memory(self):
         names = memory_test.make_workspace(self.folder, NUM_VIEWS, WIDTH, HEIGHT, BASELINE)
         memory_test.write_maps(self.folder, names, WIDTH, HEIGHT)
-        megabytes = self.fuse("agreement")
-        self.fuse("colmap", "--StereoFusion.agreement", "0")
+        seconds, megabytes = self.fuse("agreement")
+        colmap_seconds, _ = self.fuse("colmap", "--StereoFusion.agreement", "0")
         self.assertLess(megabytes, MAX_MEGABYTES)
+        self.assertLess(seconds, colmap_seconds)
 
 
 if __name__ == "__main__":
