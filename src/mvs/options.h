@@ -45,6 +45,7 @@ struct TapaOptions {
   // fitted to those that reach that number, replace the others.
   bool completion = true;
   bool completion_sightings = true;
+  bool completion_triangles = true;
   double completion_agreement = 0.5;
   double completion_radius = 0.1;
   double completion_textureness = 0.5;
@@ -123,6 +124,9 @@ void VisitTapaOptions(Options* options, const Visitor& visit) {
   option("tapa_completion_sightings", &o.completion_sightings, completes,
          "What other views see counts for and against planes where the view "
          "itself has no estimate to believe");
+  option("tapa_completion_triangles", &o.completion_triangles, completes,
+         "Triangles between textured estimates complete and replace what lies "
+         "between where more views speak for them");
   option("tapa_completion_agreement", &o.completion_agreement, completes,
          "Share of the estimates nearby that have to lie on a plane",
          Range::From(0, 1));
@@ -132,7 +136,7 @@ void VisitTapaOptions(Options* options, const Visitor& visit) {
          Range::From(0, 1));
   option("tapa_completion_textureness", &o.completion_textureness, completes,
          "Below this textureness planes replace estimates of little support, "
-         "too",
+         "too, and triangles any",
          Range::From(0, 2));
   option("tapa_completion_fill_share", &o.completion_fill_share, completes,
          "Share of a window's pixels that have to speak for the fill of a "

@@ -13,6 +13,7 @@
 #include "src/mvs/tapa/sightings.h"
 #include "src/mvs/tapa/speckles.h"
 #include "src/mvs/tapa/textureness.h"
+#include "src/mvs/tapa/triangle_completion.h"
 #include "src/mvs/window_shape.h"
 
 namespace tapa {
@@ -50,10 +51,7 @@ TapaStages::TapaStages(const Options& options, const Problem& problem,
       control_(control),
       camera_(CameraTable(problem).reference()) {
   const Map<uint8_t>& image = *problem.reference.image;
-  TexturenessOptions textureness;
-  textureness.epsilon = options.tapa.textureness_variance;
-  textureness.min_textureness = options.tapa.min_textureness;
-  record_.textureness = ComputeTextureness(image, textureness);
+  record_.textureness = ComputeTextureness(image, TexturenessOf(options.tapa));
 
   const Map<Rgb> color = ColorOf(problem);
   if (options.tapa.fine_superpixels) {
@@ -139,6 +137,11 @@ void TapaStages::Refine(Estimate* estimate) {
   if (!control_.IsStopped()) {
     Fill(estimate);
     NoteOrigin(kFilled, depth);
+  }
+  if (options_.tapa.completion && options_.tapa.completion_triangles &&
+      options_.geom_consistency && !control_.IsStopped()) {
+    CompleteWithTriangles(options_, problem_, control_, record_.textureness,
+                          trusted, &depth, &estimate->normal, &record_.origin);
   }
   ClearOthers(estimate);
 }

@@ -74,6 +74,13 @@ void ComputeRow(const std::vector<Sums>& columns, int num_rows,
 
 }  // namespace
 
+TexturenessOptions TexturenessOf(const TapaOptions& options) {
+  TexturenessOptions result;
+  result.epsilon = options.textureness_variance;
+  result.min_textureness = options.min_textureness;
+  return result;
+}
+
 Map<float> ComputeTextureness(const Map<uint8_t>& image,
                               const TexturenessOptions& options) {
   Check(options);

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "src/base/map.h"
+#include "src/mvs/options.h"
 
 namespace tapa {
 
@@ -19,6 +20,9 @@ struct TexturenessOptions {
   // Textureness of a patch without any variance.
   double min_textureness = 0.5;
 };
+
+// Those of a run.
+TexturenessOptions TexturenessOf(const TapaOptions& options);
 
 // Textureness of every pixel of a grey image (0 to 255),
 //

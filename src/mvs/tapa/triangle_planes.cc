@@ -1,0 +1,132 @@
+#include "src/mvs/tapa/triangle_planes.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "src/base/depth.h"
+
+namespace tapa {
+namespace {
+
+// Squares along the longest side.
+constexpr int kNumSquares = 80;
+// Of a pixel and the eight beside it.
+constexpr int kMinNumClose = 7;
+// A plane must be further from the camera than this share of the distance of
+// its points, or its depths explode.
+constexpr float kMinSlope = 0.02f;
+
+// row, col: not at the border.
+bool IsSmooth(const Map<float>& depth, int row, int col, float max_step) {
+  const float z = depth.At(row, col);
+  int num_close = 0;
+  for (int r = row - 1; r <= row + 1; ++r) {
+    for (int c = col - 1; c <= col + 1; ++c) {
+      num_close += std::abs(depth.At(r, c) - z) <= max_step * z ? 1 : 0;
+    }
+  }
+  return num_close >= kMinNumClose;
+}
+
+// Facing the camera. Returns whether there is one that can be seen.
+bool PlaneThrough(const std::array<Vec3, 3>& points, Plane* plane) {
+  const Vec3 u = points[1] - points[0];
+  const Vec3 v = points[2] - points[0];
+  const Vec3 cross = {u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z,
+                      u.x * v.y - u.y * v.x};
+  const float length = std::sqrt(Dot(cross, cross));
+  if (!(length > 0)) {
+    return false;
+  }
+  const float distance = -Dot(cross, points[0]) / length;
+  const float sign = distance < 0 ? -1.0f : 1.0f;
+  plane->normal = (sign / length) * cross;
+  plane->distance = std::abs(distance);
+  return plane->distance > kMinSlope * std::sqrt(Dot(points[0], points[0]));
+}
+
+std::vector<cv::Vec6f> Delaunay(int width, int height,
+                                const std::vector<Anchor>& anchors) {
+  cv::Subdiv2D subdivision(cv::Rect(0, 0, width, height));
+  for (const Anchor& anchor : anchors) {
+    subdivision.insert(cv::Point2f(static_cast<float>(anchor.col),
+                                   static_cast<float>(anchor.row)));
+  }
+  std::vector<cv::Vec6f> triangles;
+  if (anchors.size() >= 3) {
+    subdivision.getTriangleList(triangles);
+  }
+  return triangles;
+}
+
+}  // namespace
+
+std::vector<Anchor> FindAnchors(const TapaOptions& options,
+                                const Map<float>& depth,
+                                const Map<float>& textureness,
+                                double min_textureness) {
+  const int height = depth.height() - 1;
+  const int width = depth.width() - 1;
+  const int size =
+      std::max(4, (std::max(depth.width(), depth.height()) + kNumSquares - 1) /
+                      kNumSquares);
+  // Half of what a plane may be off by.
+  const float step = static_cast<float>(0.5 * options.relative_plane_distance);
+  std::vector<Anchor> anchors;
+  for (int top = 1; top < height; top += size) {
+    for (int left = 1; left < width; left += size) {
+      Anchor best = {-1, -1};
+      float most = static_cast<float>(min_textureness);
+      for (int row = top; row < std::min(top + size, height); ++row) {
+        for (int col = left; col < std::min(left + size, width); ++col) {
+          const float t = textureness.At(row, col);
+          if (t >= most && IsDepth(depth.At(row, col)) &&
+              IsSmooth(depth, row, col, step)) {
+            most = t;
+            best = {row, col};
+          }
+        }
+      }
+      if (best.row >= 0) {
+        anchors.push_back(best);
+      }
+    }
+  }
+  return anchors;
+}
+
+TrianglePlanes TriangulateAnchors(const RefCamera& camera,
+                                  const Map<float>& depth,
+                                  const std::vector<Anchor>& anchors) {
+  const int width = depth.width();
+  const int height = depth.height();
+  TrianglePlanes result;
+  result.index = Map<int32_t>(width, height, TrianglePlanes::kNone);
+  cv::Mat index(height, width, CV_32S, result.index.data());
+  for (const cv::Vec6f& triangle : Delaunay(width, height, anchors)) {
+    std::array<cv::Point, 3> corners;
+    std::array<Vec3, 3> points;
+    bool is_inside = true;
+    for (int i = 0; i < 3 && is_inside; ++i) {
+      // Triangles at the rim have corners outside of the image.
+      const int col = static_cast<int>(std::lround(triangle[2 * i]));
+      const int row = static_cast<int>(std::lround(triangle[2 * i + 1]));
+      is_inside = row >= 0 && col >= 0 && row < height && col < width;
+      if (is_inside) {
+        corners[i] = {col, row};
+        points[i] = depth.At(row, col) * camera.Ray(row, col);
+      }
+    }
+    Plane plane;
+    if (is_inside && PlaneThrough(points, &plane)) {
+      cv::fillConvexPoly(index, corners.data(), 3,
+                         cv::Scalar(static_cast<double>(result.planes.size())));
+      result.planes.push_back(plane);
+    }
+  }
+  return result;
+}
+
+}  // namespace tapa
