@@ -29,7 +29,7 @@ BUILD_DIR=$out "$here/build.sh" -DTAPA_SANITIZE="$kind" -DTAPA_COLMAP_BUILD="$bu
 # loaded into Python, which is not instrumented, and what measures time or quality.
 # Neither can a program with a sanitizer live in a small address space, or with another library
 # before the sanitizer's.
-left_out='^(evaluation\.|packaging|colmap_source_test|python|scenes|fuzz|reliability)'
+left_out='^(evaluation\.|examples\.|packaging|colmap_source_test|python|scenes|fuzz|reliability)'
 left_out+='|^end_to_end\.(quality|interchange|eth3d|evaluate|install|memory|security)'
 # The emulated GPU runs the threads of a kernel in turns on one thread of the system, so that there
 # is nothing to find in long estimations; and ThreadSanitizer, which cannot follow exceptions out of
