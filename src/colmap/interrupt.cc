@@ -1,11 +1,16 @@
 #include "src/colmap/interrupt.h"
 
+#include <atomic>
+
 #include "src/colmap/guest.h"
 
 namespace tapa {
 namespace {
 
-volatile std::sig_atomic_t received_signal = 0;
+// Whichever thread the system interrupts notes it, and another one asks.
+std::atomic<int> received_signal(0);
+static_assert(std::atomic<int>::is_always_lock_free,
+              "a signal must not wait for a lock");
 
 void NoteSignal(int signal) {
   received_signal = signal;

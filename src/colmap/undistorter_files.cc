@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <mutex>
 #include <system_error>
 
 #include "src/base/atomic_file.h"
@@ -22,6 +23,15 @@ bool IsSame(const std::string& path, const std::string& other) {
 
 void WarnOfPhoto(const Failure& error) {
   PrintWarning(std::string(error.what()) + "; it is left out");
+}
+
+// Photographs are written by several threads, and the library takes its list of
+// names apart with strtok(), whose place in it they would share.
+FREE_IMAGE_FORMAT FormatOfName(const std::string& path) {
+  static std::mutex mutex;
+  const std::lock_guard<std::mutex> lock(mutex);
+  const FREE_IMAGE_FORMAT format = FreeImage_GetFIFFromFilename(path.c_str());
+  return format == FIF_UNKNOWN ? FIF_PNG : format;
 }
 
 }  // namespace
@@ -70,8 +80,7 @@ bool ReadPhotoOf(const colmap::Camera& camera, const std::string& path,
 }
 
 void WritePhoto(const colmap::Bitmap& bitmap, const std::string& path) {
-  FREE_IMAGE_FORMAT format = FreeImage_GetFIFFromFilename(path.c_str());
-  format = format == FIF_UNKNOWN ? FIF_PNG : format;
+  const FREE_IMAGE_FORMAT format = FormatOfName(path);
   // As COLMAP does. The library does not look at what becomes of a file's end.
   const int flags = format == FIF_JPEG ? JPEG_QUALITYSUPERB : 0;
   const std::unique_ptr<FIMEMORY, decltype(&FreeImage_CloseMemory)> memory(
