@@ -18,8 +18,9 @@ ROOM = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../examples/
 HEIGHTS = (576, 1152, 2000, 4000)  # Of 3:2 photographs: 0.5, 2, 6 and 24 megapixels.
 VIEW = "room_05.jpg"
 NUM_SOURCES = 10
-# Asked for are 1.15, in quiet; machines have other things to do.
-MAX_RATIO = 1.5
+# Of costs from the second size on: at the first one the start of the program counts. Asked for
+# are 1.15, in quiet; machines have other things to do.
+MAX_RATIO = 1.4
 
 
 def cpu_seconds():
@@ -63,7 +64,7 @@ class ScaleTest(tiny.TestCase):
 
     def test_cost_of_a_pixel(self):
         costs = [self.measure(height) for height in HEIGHTS]
-        self.assertLess(max(costs) / min(costs), MAX_RATIO)
+        self.assertLess(max(costs[1:]) / min(costs[1:]), MAX_RATIO)
 
 
 if __name__ == "__main__":
