@@ -70,6 +70,7 @@ class Fusion(tiny.TestCase):
         self.assertEqual(one, content("--StereoFusion.num_threads", "4"))
         self.assertEqual(one, content("--StereoFusion.agreement_cache_size", "1e-6"))
 
+    @unittest.skipIf("TSAN_OPTIONS" in os.environ, "ThreadSanitizer cannot follow OpenMP")
     def test_meshers_read_it(self):
         self.assert_success(self.fuse())
         for mesher in ("poisson", "delaunay"):

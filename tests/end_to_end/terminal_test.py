@@ -44,6 +44,7 @@ def left_lines(text):
 
 class Terminal(tiny.TestCase):
 
+    @unittest.skipIf("TSAN_OPTIONS" in os.environ, "ThreadSanitizer cannot follow OpenMP")
     def test_automatic_reconstructor(self):
         names = ["view%02d.png" % i for i in range(24)]
         tiny.make_images(self.path("photos"), names)
