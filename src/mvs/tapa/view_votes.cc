@@ -73,7 +73,7 @@ Map<int16_t> CountVotes(const Options& options, const Problem& problem,
   const CameraTable table(problem);
   const SourceCameras views = table.sources();
   Map<int16_t> votes(depth.width(), depth.height());
-  for (int m = 0; m < views.count; ++m) {
+  for (int m = 0; m < views.count && !control.IsStopped(); ++m) {
     const Voter voter(options, problem.sources[m], views, m);
     for (int row = 0; row < depth.height() && !control.IsStopped(); ++row) {
       for (int col = 0; col < depth.width(); ++col) {
