@@ -10,6 +10,7 @@
 
 #include "src/mvs/backends.h"
 #include "src/mvs/cuda/memory_plan.h"
+#include "src/mvs/cuda/memory_share.h"
 #include "src/mvs/device_error.h"
 #include "src/mvs/device_trial.h"
 #include "src/mvs/devices.h"
@@ -188,6 +189,18 @@ TEST(CudaBackend, WaitsForMemory) {
     EXPECT_TRUE(result.get());
   }
   EXPECT_EQ(emulated_cuda::GetUsage().num_objects, 0);
+}
+
+// A share that ends between the error and the wait has ended, too.
+TEST(CudaBackend, WaitsForNoneThatHasEnded) {
+  emulated_cuda::Reset({});
+  const int num_ended = MemoryShare::NumEnded(0);
+  EXPECT_FALSE(MemoryShare::WaitForEnd(0, num_ended));
+  MemoryShare(0, 1).Settle();
+  EXPECT_TRUE(MemoryShare::WaitForEnd(0, num_ended));
+  // What never settled had nothing that others could take.
+  MemoryShare(0, 1);
+  EXPECT_FALSE(MemoryShare::WaitForEnd(0, num_ended + 1));
 }
 
 // More views than the shared memory has room for.

@@ -357,11 +357,13 @@ std::unique_ptr<BackendForTesting> MakeCudaBackendForTesting(
     const Options& options, const Problem& problem,
     const CudaSwitches& switches) {
   while (true) {
+    // Asked before, as one may end between the error and the wait.
+    const int num_ended = MemoryShare::NumEnded(options.device);
     try {
       return std::make_unique<CudaBackend>(options, problem, switches);
     } catch (const DeviceMemoryError&) {
       // Others of this program may have what is missing.
-      if (!MemoryShare::WaitForEnd(options.device)) {
+      if (!MemoryShare::WaitForEnd(options.device, num_ended)) {
         throw;
       }
     }

@@ -78,15 +78,20 @@ void MemoryShare::Settle() {
   changed.notify_all();
 }
 
-bool MemoryShare::WaitForEnd(int device) {
+int MemoryShare::NumEnded(int device) {
+  const std::lock_guard<std::mutex> lock(mutex);
+  return shares_of_device[device].num_ended;
+}
+
+bool MemoryShare::WaitForEnd(int device, int num_ended) {
   std::unique_lock<std::mutex> lock(mutex);
   const Shares& shares = shares_of_device[device];
-  if (shares.num_settled == 0) {
-    return false;
-  }
-  const int num_ended = shares.num_ended;
-  changed.wait(lock, [&] { return shares.num_ended != num_ended; });
-  return true;
+  const auto has_one_ended = [&] { return shares.num_ended != num_ended; };
+  const auto is_none_left = [&] {
+    return shares.num_settled == 0 && !shares.is_one_settling;
+  };
+  changed.wait(lock, [&] { return has_one_ended() || is_none_left(); });
+  return has_one_ended();
 }
 
 }  // namespace tapa

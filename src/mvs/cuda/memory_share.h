@@ -19,8 +19,12 @@ class MemoryShare {
   // To be called once everything is allocated; others wait for it.
   void Settle();
 
-  // Waits until one of the GPU's shares ends; returns false if there is none.
-  static bool WaitForEnd(int device);
+  // How many of the GPU's shares have ended so far.
+  static int NumEnded(int device);
+
+  // Waits until more of the GPU's shares than that have ended; returns false if
+  // there is none left that could end.
+  static bool WaitForEnd(int device, int num_ended);
 
  private:
   const int device_;
