@@ -1,10 +1,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
+#include <set>
 #include <vector>
 
+#include "src/mvs/tapa/anchor_votes.h"
 #include "src/mvs/tapa/triangle_planes.h"
 
 namespace tapa {
@@ -125,6 +128,54 @@ TEST(TriangulateAnchors, HasNoPlaneWhereThereIsNone) {
   EXPECT_TRUE(
       TriangulateAnchors(TestCamera(), edge_on, {{60, 20}, {60, 140}, {61, 80}})
           .planes.empty());
+}
+
+// Corners and anchors that share a triangle with one, by looking at all.
+std::set<int> NaiveAround(const TrianglePlanes& triangles, size_t triangle) {
+  std::set<int> around;
+  for (const int corner : triangles.corners[triangle]) {
+    for (const std::array<int, 3>& other : triangles.corners) {
+      if (std::count(other.begin(), other.end(), corner) > 0) {
+        around.insert(other.begin(), other.end());
+      }
+    }
+  }
+  return around;
+}
+
+TEST(AnchorVotes, AreThoseOfAnchorsAround) {
+  // A slanted plane and, to the right, another one.
+  Map<float> depth = DepthOf(kSlanted);
+  const Plane other = {{0, 0.28f, -0.96f}, 4};
+  const Map<float> right = DepthOf(other);
+  for (int row = 0; row < kHeight; ++row) {
+    for (int col = 90; col < kWidth; ++col) {
+      depth.At(row, col) = right.At(row, col);
+    }
+  }
+  const TrianglePlanes triangles =
+      TriangulateAnchors(TestCamera(), depth, RandomAnchors(60));
+  ASSERT_EQ(triangles.corners.size(), triangles.planes.size());
+  const AnchorVotes votes(triangles, 0.02);
+  int most = 0;
+  for (size_t i = 0; i < triangles.corners.size(); ++i) {
+    const std::set<int> around = NaiveAround(triangles, i);
+    for (const Plane& plane : {kSlanted, other, triangles.planes[i]}) {
+      int expected = 0;
+      for (const int anchor : around) {
+        const Vec3 p = triangles.anchors[anchor];
+        const double along = static_cast<double>(plane.normal.x) * p.x +
+                             static_cast<double>(plane.normal.y) * p.y +
+                             static_cast<double>(plane.normal.z) * p.z;
+        expected += std::abs(-plane.distance / along - 1) <= 0.02;
+      }
+      EXPECT_EQ(votes.Count(static_cast<int>(i), plane), expected);
+      most = std::max(most, expected);
+    }
+    EXPECT_GE(votes.Count(static_cast<int>(i), triangles.planes[i]), 3);
+    EXPECT_EQ(votes.Count(static_cast<int>(i), Plane()), 0);
+  }
+  EXPECT_GT(most, 8);
 }
 
 TEST(FindAnchors, TakesTheMostTexturedOfASquare) {

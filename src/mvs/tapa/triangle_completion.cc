@@ -1,8 +1,8 @@
 #include "src/mvs/tapa/triangle_completion.h"
 
-#include <algorithm>
-
+#include "src/base/depth.h"
 #include "src/mvs/camera_table.h"
+#include "src/mvs/tapa/anchor_votes.h"
 #include "src/mvs/tapa/completion.h"
 #include "src/mvs/tapa/triangle_planes.h"
 #include "src/mvs/tapa/view_votes.h"
@@ -13,6 +13,12 @@ namespace {
 // Of what triangles have as corners: deviations of eight grey levels with the
 // default options, which edges have and shading has not.
 constexpr double kClearTexture = 0.7;
+// More for a triangle than for the estimate. Three are those of its own
+// corners.
+constexpr int kMinNumVotes = 8;
+// Times tapa_relative_plane_distance: anchors are further away than what a
+// plane was fitted to.
+constexpr double kAnchorTolerance = 2;
 
 // The depths of triangles where they may be taken; 0 elsewhere.
 Map<float> Candidates(const Options& options, const Problem& problem,
@@ -33,10 +39,11 @@ Map<float> Candidates(const Options& options, const Problem& problem,
   return candidates;
 }
 
-// One view more than makes an estimate trusted.
-int MinNumVotes(const Options& options, const Problem& problem) {
-  return 1 + std::min(options.filter_min_num_consistent,
-                      static_cast<int>(problem.sources.size()));
+// How many more anchors around lie on a triangle's plane than on an estimate's.
+int CountAnchors(const AnchorVotes& anchors, const TrianglePlanes& triangles,
+                 int triangle, const Vec3& point, const Vec3& normal) {
+  return anchors.Count(triangle, triangles.planes[triangle]) -
+         anchors.Count(triangle, {normal, -Dot(normal, point)});
 }
 
 }  // namespace
@@ -54,10 +61,17 @@ void CompleteWithTriangles(const Options& options, const Problem& problem,
       Candidates(options, problem, camera, textureness, triangles);
   const Map<int16_t> votes =
       CountVotes(options, problem, control, candidates, *depth);
-  const int min_num_votes = MinNumVotes(options, problem);
+  const AnchorVotes anchors(
+      triangles, kAnchorTolerance * options.tapa.relative_plane_distance);
   for (int row = 0; row < depth->height(); ++row) {
     for (int col = 0; col < depth->width(); ++col) {
-      if (votes.At(row, col) >= min_num_votes) {
+      if (!IsDepth(candidates.At(row, col))) {
+        continue;
+      }
+      const int num_anchors = CountAnchors(
+          anchors, triangles, triangles.index.At(row, col),
+          depth->At(row, col) * camera.Ray(row, col), normal->At(row, col));
+      if (votes.At(row, col) + num_anchors >= kMinNumVotes) {
         depth->At(row, col) = candidates.At(row, col);
         normal->At(row, col) = triangles.At(camera, row, col).normal;
         origin->At(row, col) = kFromPlane;

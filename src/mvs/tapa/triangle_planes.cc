@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <opencv2/imgproc.hpp>
+#include <utility>
 
 #include "src/base/depth.h"
 
@@ -104,26 +106,35 @@ TrianglePlanes TriangulateAnchors(const RefCamera& camera,
   const int height = depth.height();
   TrianglePlanes result;
   result.index = Map<int32_t>(width, height, TrianglePlanes::kNone);
+  // OpenCV names corners by their places.
+  std::map<std::pair<int, int>, int> anchor_at;
+  for (const auto& [row, col] : anchors) {
+    if (anchor_at.emplace(std::pair(row, col), result.anchors.size()).second) {
+      result.anchors.push_back(depth.At(row, col) * camera.Ray(row, col));
+    }
+  }
   cv::Mat index(height, width, CV_32S, result.index.data());
   for (const cv::Vec6f& triangle : Delaunay(width, height, anchors)) {
-    std::array<cv::Point, 3> corners;
-    std::array<Vec3, 3> points;
+    std::array<cv::Point, 3> pixels;
+    std::array<int, 3> corners;
     bool is_inside = true;
     for (int i = 0; i < 3 && is_inside; ++i) {
+      pixels[i] = {static_cast<int>(std::lround(triangle[2 * i])),
+                   static_cast<int>(std::lround(triangle[2 * i + 1]))};
       // Triangles at the rim have corners outside of the image.
-      const int col = static_cast<int>(std::lround(triangle[2 * i]));
-      const int row = static_cast<int>(std::lround(triangle[2 * i + 1]));
-      is_inside = row >= 0 && col >= 0 && row < height && col < width;
-      if (is_inside) {
-        corners[i] = {col, row};
-        points[i] = depth.At(row, col) * camera.Ray(row, col);
-      }
+      const auto found = anchor_at.find({pixels[i].y, pixels[i].x});
+      is_inside = found != anchor_at.end();
+      corners[i] = is_inside ? found->second : -1;
     }
     Plane plane;
-    if (is_inside && PlaneThrough(points, &plane)) {
-      cv::fillConvexPoly(index, corners.data(), 3,
+    if (is_inside &&
+        PlaneThrough({result.anchors[corners[0]], result.anchors[corners[1]],
+                      result.anchors[corners[2]]},
+                     &plane)) {
+      cv::fillConvexPoly(index, pixels.data(), 3,
                          cv::Scalar(static_cast<double>(result.planes.size())));
       result.planes.push_back(plane);
+      result.corners.push_back(corners);
     }
   }
   return result;

@@ -1,6 +1,7 @@
 #ifndef TAPA_SRC_MVS_TAPA_TRIANGLE_PLANES_H_
 #define TAPA_SRC_MVS_TAPA_TRIANGLE_PLANES_H_
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -21,6 +22,10 @@ struct TrianglePlanes {
   static constexpr int32_t kNone = -1;
 
   std::vector<Plane> planes;
+  // Of each triangle the anchors at its corners, as indices.
+  std::vector<std::array<int, 3>> corners;
+  // In the frame of the camera.
+  std::vector<Vec3> anchors;
   // The triangle of every pixel; kNone: none.
   Map<int32_t> index;
 
