@@ -12,6 +12,7 @@
 
 #include "src/base/atomic_file.h"
 #include "src/base/failure.h"
+#include "src/base/read_at.h"
 
 // Values are copied as they stand in memory.
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__,
@@ -115,20 +116,11 @@ void MapRows::Check(MapKind kind, uint64_t file_size) {
 }
 
 size_t MapRows::ReadBytes(void* bytes, size_t size, uint64_t at) const {
-  size_t done = 0;
-  while (done < size) {
-    const ssize_t num_read = pread(file_, static_cast<char*>(bytes) + done,
-                                   size - done, static_cast<off_t>(at + done));
-    if (num_read == 0) {
-      break;
-    }
-    if (num_read > 0) {
-      done += static_cast<size_t>(num_read);
-    } else if (errno != EINTR) {
-      Fail(path_, std::string("cannot be read: ") + std::strerror(errno));
-    }
+  const int64_t num_read = ReadAt(file_, bytes, size, at);
+  if (num_read < 0) {
+    Fail(path_, std::string("cannot be read: ") + std::strerror(errno));
   }
-  return done;
+  return static_cast<size_t>(num_read);
 }
 
 void MapRows::Read(int channel, int row, float* values) const {

@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "src/base/failure.h"
+#include "src/base/read_at.h"
 #include "src/fusion/fused_cloud.h"
 
 namespace tapa {
@@ -57,16 +58,11 @@ size_t PointFile::Append(const FusedPoint* points, size_t count) {
 }
 
 void PointFile::Read(size_t begin, size_t count, FusedPoint* points) const {
-  char* bytes = reinterpret_cast<char*>(points);
   const size_t size = count * sizeof(FusedPoint);
-  for (size_t done = 0; done < size;) {
-    const auto at = static_cast<off_t>(begin * sizeof(FusedPoint) + done);
-    const ssize_t num_read = pread(file_, bytes + done, size - done, at);
-    if (num_read > 0) {
-      done += static_cast<size_t>(num_read);
-    } else if (num_read == 0 || errno != EINTR) {
-      Fail("read from", num_read == 0 ? EIO : errno);
-    }
+  const int64_t num_read =
+      ReadAt(file_, points, size, begin * sizeof(FusedPoint));
+  if (num_read != static_cast<int64_t>(size)) {
+    Fail("read from", num_read < 0 ? errno : EIO);
   }
 }
 

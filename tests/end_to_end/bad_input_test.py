@@ -264,6 +264,21 @@ class CannotWrite(tiny.TestCase):
         self.assertEqual(os.listdir(self.path("stereo", "depth_maps")), [])
         self.assertEqual(os.listdir(self.path("stereo", "normal_maps")), [])
 
+    def test_no_room_for_a_model(self):
+        for kind in ("TXT", "BIN"):
+            def convert(name, **options):
+                os.mkdir(self.path(name))
+                return tiny.run(
+                    [tiny.COLMAP, "model_converter", "--input_path", self.path("sparse"),
+                     "--output_path", self.path(name), "--output_type", kind], **options)
+
+            self.assert_success(convert(kind))
+            sizes = {name: os.path.getsize(self.path(kind, name))
+                     for name in os.listdir(self.path(kind))}
+            largest = max(sizes, key=sizes.get)
+            result = convert(kind + "2", preexec_fn=_limit_file_size(sizes[largest] // 2))
+            self.assert_one_error(result, largest)
+
     def test_full_disk(self):
         depth_maps = self.path("stereo", "depth_maps")
         if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=40k", "none",
