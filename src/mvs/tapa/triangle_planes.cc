@@ -49,16 +49,35 @@ bool PlaneThrough(const std::array<Vec3, 3>& points, Plane* plane) {
   return plane->distance > kMinSlope * std::sqrt(Dot(points[0], points[0]));
 }
 
-std::vector<cv::Vec6f> Delaunay(int width, int height,
-                                const std::vector<Anchor>& anchors) {
+// Triangles of indices of anchors.
+std::vector<std::array<int, 3>> Delaunay(int width, int height,
+                                         const std::vector<Anchor>& anchors) {
   cv::Subdiv2D subdivision(cv::Rect(0, 0, width, height));
-  for (const Anchor& anchor : anchors) {
-    subdivision.insert(cv::Point2f(static_cast<float>(anchor.col),
-                                   static_cast<float>(anchor.row)));
+  // OpenCV names corners by their places.
+  std::map<std::pair<int, int>, int> anchor_at;
+  for (size_t i = 0; i < anchors.size(); ++i) {
+    const auto& [row, col] = anchors[i];
+    subdivision.insert(
+        cv::Point2f(static_cast<float>(col), static_cast<float>(row)));
+    anchor_at.emplace(std::pair(row, col), static_cast<int>(i));
   }
-  std::vector<cv::Vec6f> triangles;
+  std::vector<cv::Vec6f> found;
   if (anchors.size() >= 3) {
-    subdivision.getTriangleList(triangles);
+    subdivision.getTriangleList(found);
+  }
+  const auto anchor = [&](float col, float row) {
+    const auto at = anchor_at.find({static_cast<int>(std::lround(row)),
+                                    static_cast<int>(std::lround(col))});
+    return at == anchor_at.end() ? -1 : at->second;
+  };
+  std::vector<std::array<int, 3>> triangles;
+  for (const cv::Vec6f& xy : found) {
+    const std::array<int, 3> corners = {
+        anchor(xy[0], xy[1]), anchor(xy[2], xy[3]), anchor(xy[4], xy[5])};
+    // Triangles at the rim have corners outside of the image.
+    if (*std::min_element(corners.begin(), corners.end()) >= 0) {
+      triangles.push_back(corners);
+    }
   }
   return triangles;
 }
@@ -102,35 +121,23 @@ std::vector<Anchor> FindAnchors(const TapaOptions& options,
 TrianglePlanes TriangulateAnchors(const RefCamera& camera,
                                   const Map<float>& depth,
                                   const std::vector<Anchor>& anchors) {
-  const int width = depth.width();
-  const int height = depth.height();
   TrianglePlanes result;
-  result.index = Map<int32_t>(width, height, TrianglePlanes::kNone);
-  // OpenCV names corners by their places.
-  std::map<std::pair<int, int>, int> anchor_at;
   for (const auto& [row, col] : anchors) {
-    if (anchor_at.emplace(std::pair(row, col), result.anchors.size()).second) {
-      result.anchors.push_back(depth.At(row, col) * camera.Ray(row, col));
-    }
+    result.anchors.push_back(depth.At(row, col) * camera.Ray(row, col));
   }
-  cv::Mat index(height, width, CV_32S, result.index.data());
-  for (const cv::Vec6f& triangle : Delaunay(width, height, anchors)) {
+  result.index =
+      Map<int32_t>(depth.width(), depth.height(), TrianglePlanes::kNone);
+  cv::Mat index(depth.height(), depth.width(), CV_32S, result.index.data());
+  for (const std::array<int, 3>& corners :
+       Delaunay(depth.width(), depth.height(), anchors)) {
     std::array<cv::Point, 3> pixels;
-    std::array<int, 3> corners;
-    bool is_inside = true;
-    for (int i = 0; i < 3 && is_inside; ++i) {
-      pixels[i] = {static_cast<int>(std::lround(triangle[2 * i])),
-                   static_cast<int>(std::lround(triangle[2 * i + 1]))};
-      // Triangles at the rim have corners outside of the image.
-      const auto found = anchor_at.find({pixels[i].y, pixels[i].x});
-      is_inside = found != anchor_at.end();
-      corners[i] = is_inside ? found->second : -1;
+    std::array<Vec3, 3> points;
+    for (int i = 0; i < 3; ++i) {
+      pixels[i] = {anchors[corners[i]].col, anchors[corners[i]].row};
+      points[i] = result.anchors[corners[i]];
     }
     Plane plane;
-    if (is_inside &&
-        PlaneThrough({result.anchors[corners[0]], result.anchors[corners[1]],
-                      result.anchors[corners[2]]},
-                     &plane)) {
+    if (PlaneThrough(points, &plane)) {
       cv::fillConvexPoly(index, pixels.data(), 3,
                          cv::Scalar(static_cast<double>(result.planes.size())));
       result.planes.push_back(plane);
