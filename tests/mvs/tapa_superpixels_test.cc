@@ -1,9 +1,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstring>
+#include <future>
 #include <random>
+#include <thread>
 #include <vector>
 
 #include "src/mvs/tapa/superpixels.h"
@@ -262,6 +265,34 @@ TEST(ComputeSuperpixels, IsDeterministic) {
                         a.labels.size() * sizeof(uint16_t)),
             0);
   ExpectSameNeighbors(a.neighbors, b.neighbors);
+}
+
+// OpenCV fills its tables of colours at their first use, which must not be that
+// of several threads. To be run in a process of its own.
+TEST(ComputeSuperpixels, FirstUsesMayBeAtTheSameTime) {
+  constexpr int kNumThreads = 4;
+  const Map<Rgb> image = NoiseImage(64, 64, 256, 4);
+  std::atomic<int> num_ready = 0;
+  std::vector<std::future<Superpixels>> results;
+  for (int i = 0; i < kNumThreads; ++i) {
+    results.push_back(std::async(std::launch::async, [&] {
+      ++num_ready;
+      while (num_ready < kNumThreads) {
+        std::this_thread::yield();
+      }
+      return ComputeSuperpixels(image, 12);
+    }));
+  }
+  std::vector<Superpixels> found;
+  for (std::future<Superpixels>& result : results) {
+    found.push_back(result.get());
+  }
+  const Superpixels expected = ComputeSuperpixels(image, 12);
+  for (const Superpixels& superpixels : found) {
+    EXPECT_EQ(std::memcmp(superpixels.labels.data(), expected.labels.data(),
+                          expected.labels.size() * sizeof(uint16_t)),
+              0);
+  }
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <mutex>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/ximgproc/seeds.hpp>
 #include <set>
@@ -78,6 +79,16 @@ bool HasGrid(const Map<Rgb>& image, int num_superpixels) {
          static_cast<int64_t>(rows) * image.width() >= image.height();
 }
 
+// OpenCV fills tables when it converts for the first time, and does so in every
+// thread that comes before they are ready, where others read them.
+void PrepareLab() {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    cv::Mat lab;
+    cv::cvtColor(cv::Mat(1, 1, CV_8UC3, cv::Scalar()), lab, cv::COLOR_RGB2Lab);
+  });
+}
+
 // Leaves the labels alone where the image's shape has no room for blocks.
 // OpenCV's SEEDS mislabels floating point input, so it gets 8-bit Lab.
 void RunSeeds(const Map<Rgb>& image, int num_superpixels,
@@ -88,6 +99,7 @@ void RunSeeds(const Map<Rgb>& image, int num_superpixels,
   constexpr int kNumIterations = 10;
   const cv::Mat rgb(image.height(), image.width(), CV_8UC3,
                     const_cast<Rgb*>(image.data()));
+  PrepareLab();
   cv::Mat lab;
   cv::cvtColor(rgb, lab, cv::COLOR_RGB2Lab);
   const auto seeds = cv::ximgproc::createSuperpixelSEEDS(
