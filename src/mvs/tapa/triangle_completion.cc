@@ -1,5 +1,7 @@
 #include "src/mvs/tapa/triangle_completion.h"
 
+#include <vector>
+
 #include "src/base/depth.h"
 #include "src/mvs/camera_table.h"
 #include "src/mvs/tapa/anchor_votes.h"
@@ -39,11 +41,19 @@ Map<float> Candidates(const Options& options, const Problem& problem,
   return candidates;
 }
 
-// How many more anchors around lie on a triangle's plane than on an estimate's.
-int CountAnchors(const AnchorVotes& anchors, const TrianglePlanes& triangles,
-                 int triangle, const Vec3& point, const Vec3& normal) {
-  return anchors.Count(triangle, triangles.planes[triangle]) -
-         anchors.Count(triangle, {normal, -Dot(normal, point)});
+// How many anchors around each triangle lie on its plane.
+std::vector<int> CountAnchors(const AnchorVotes& anchors,
+                              const TrianglePlanes& triangles) {
+  std::vector<int> counts;
+  for (const Plane& plane : triangles.planes) {
+    counts.push_back(anchors.Count(static_cast<int>(counts.size()), plane));
+  }
+  return counts;
+}
+
+// Of an estimate at a pixel with this ray.
+Plane PlaneOf(float depth, const Vec3& normal, const Vec3& ray) {
+  return {normal, -depth * Dot(normal, ray)};
 }
 
 }  // namespace
@@ -63,15 +73,18 @@ void CompleteWithTriangles(const Options& options, const Problem& problem,
       CountVotes(options, problem, control, candidates, *depth);
   const AnchorVotes anchors(
       triangles, kAnchorTolerance * options.tapa.relative_plane_distance);
+  const std::vector<int> own_anchors = CountAnchors(anchors, triangles);
   for (int row = 0; row < depth->height(); ++row) {
     for (int col = 0; col < depth->width(); ++col) {
       if (!IsDepth(candidates.At(row, col))) {
         continue;
       }
-      const int num_anchors = CountAnchors(
-          anchors, triangles, triangles.index.At(row, col),
-          depth->At(row, col) * camera.Ray(row, col), normal->At(row, col));
-      if (votes.At(row, col) + num_anchors >= kMinNumVotes) {
+      const int triangle = triangles.index.At(row, col);
+      const Plane plane = PlaneOf(depth->At(row, col), normal->At(row, col),
+                                  camera.Ray(row, col));
+      if (votes.At(row, col) + own_anchors[triangle] -
+              anchors.Count(triangle, plane) >=
+          kMinNumVotes) {
         depth->At(row, col) = candidates.At(row, col);
         normal->At(row, col) = triangles.At(camera, row, col).normal;
         origin->At(row, col) = kFromPlane;
