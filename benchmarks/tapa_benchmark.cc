@@ -1,7 +1,7 @@
 // Speed of TAPA's stages at one megapixel next to naive references, in one run.
-// Superpixels, the drawing of planes and sightings have none: the first is
-// OpenCV's, the second one table look-up for every pixel, and the third asks
-// every view about every pixel, as a reference would.
+// Superpixels, means over similar pixels, the drawing of planes and sightings
+// have none: the first two are OpenCV's, the third one table look-up for every
+// pixel, and the last asks every view about every pixel, as a reference would.
 
 #include <benchmark/benchmark.h>
 
@@ -13,6 +13,7 @@
 #include "src/mvs/sweep/random.h"
 #include "src/mvs/tapa/fill.h"
 #include "src/mvs/tapa/sightings.h"
+#include "src/mvs/tapa/similar_mean.h"
 #include "src/mvs/tapa/speckles.h"
 #include "src/mvs/tapa/superpixel_planes.h"
 #include "src/mvs/tapa/superpixels.h"
@@ -259,6 +260,16 @@ BENCHMARK(BM_FillNaive)->Unit(benchmark::kMillisecond);
 
 void BM_Fill(benchmark::State& state) { RunFill(state, FillMissing); }
 BENCHMARK(BM_Fill)->Unit(benchmark::kMillisecond);
+
+void BM_SimilarMean(benchmark::State& state) {
+  const Work& work = Work::Get();
+  const Map<float> weights(kWidth, kHeight, 1);
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(MeanOverSimilarPixels(
+        work.image, work.depth, weights, kWidth / 10, 0.00005));
+  }
+}
+BENCHMARK(BM_SimilarMean)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace tapa

@@ -53,6 +53,23 @@ class TriangleCompletionTest : public testing::Test {
                           &estimate_, &normal_, &origin_);
   }
 
+  void BlindViews() {
+    for (Map<float>& depth : source_depths_) {
+      depth = Map<float>(depth.width(), depth.height());
+    }
+  }
+
+  // Of the true plane, but further away by a factor, in every step-th row and
+  // column.
+  void GiveEstimates(float factor, int step) {
+    for (int row = 0; row < estimate_.height(); row += step) {
+      for (int col = 0; col < estimate_.width(); col += step) {
+        estimate_.At(row, col) = factor * scene_->depth().At(row, col);
+        normal_.At(row, col) = scene_->normal();
+      }
+    }
+  }
+
   // Share of the stripe where the estimate is right now.
   double ShareRight() const {
     int num_all = 0;
@@ -109,15 +126,30 @@ TEST_F(TriangleCompletionTest, LeavesWhatIsMasked) {
   EXPECT_EQ(ShareRight(), 0);
 }
 
-// All four views speak for the triangles, but the estimates, off by less than
-// anchors are asked for, go through what lies around them.
+// No view says anything, and the estimates, off by less than anchors are asked
+// for, go through what lies around them.
 TEST_F(TriangleCompletionTest, LeavesWhatAnchorsSpeakForToo) {
-  for (size_t i = 0; i < estimate_.size(); ++i) {
-    estimate_.data()[i] = 1.015f * scene_->depth().data()[i];
-    normal_.data()[i] = scene_->normal();
-  }
+  BlindViews();
+  GiveEstimates(1.015f, 1);
   Complete();
   EXPECT_EQ(ShareRight(), 0);
+}
+
+TEST_F(TriangleCompletionTest, ReplacesWhatAnchorsSpeakAgainst) {
+  BlindViews();
+  GiveEstimates(1.03f, 1);
+  Complete();
+  EXPECT_GT(ShareRight(), 0.8);
+}
+
+// One in nine estimates goes through what lies around it, as above, but those
+// beside it do not.
+TEST_F(TriangleCompletionTest, PixelsAroundHaveTheirSay) {
+  BlindViews();
+  GiveEstimates(1.03f, 1);
+  GiveEstimates(1.015f, 3);
+  Complete();
+  EXPECT_GT(ShareRight(), 0.8);
 }
 
 // The source views see through the triangles; all of them look at the middle.

@@ -6,6 +6,7 @@
 #include "src/mvs/camera_table.h"
 #include "src/mvs/tapa/anchor_votes.h"
 #include "src/mvs/tapa/completion.h"
+#include "src/mvs/tapa/similar_mean.h"
 #include "src/mvs/tapa/triangle_planes.h"
 #include "src/mvs/tapa/view_votes.h"
 
@@ -15,9 +16,11 @@ namespace {
 // Of what triangles have as corners: deviations of eight grey levels with the
 // default options, which edges have and shading has not.
 constexpr double kClearTexture = 0.7;
-// More for a triangle than for the estimate. Three are those of its own
-// corners.
-constexpr int kMinNumVotes = 8;
+// More for a triangle than for the estimate: those of its own corners, which
+// lie on it, whatever it is.
+constexpr float kMinNumVotes = 3;
+// Of views: what four see through is free space, whatever lies around it.
+constexpr int kMinViewVotes = -8;
 // Times tapa_relative_plane_distance: anchors are further away than what a
 // plane was fitted to.
 constexpr double kAnchorTolerance = 2;
@@ -56,6 +59,55 @@ Plane PlaneOf(float depth, const Vec3& normal, const Vec3& ray) {
   return {normal, -depth * Dot(normal, ray)};
 }
 
+// Removes what views speak against.
+void RemoveContradicted(const Map<int16_t>& view_votes,
+                        Map<float>* candidates) {
+  for (size_t i = 0; i < candidates->size(); ++i) {
+    if (view_votes.data()[i] < kMinViewVotes) {
+      candidates->data()[i] = 0;
+    }
+  }
+}
+
+// How many more votes, of views and of anchors, the candidates have than the
+// estimates; 0 where there is no candidate.
+Map<float> CountLead(const Options& options, const RefCamera& camera,
+                     const TrianglePlanes& triangles,
+                     const Map<float>& candidates,
+                     const Map<int16_t>& view_votes, const Map<float>& depth,
+                     const Map<Vec3>& normal) {
+  const AnchorVotes anchors(
+      triangles, kAnchorTolerance * options.tapa.relative_plane_distance);
+  const std::vector<int> own_anchors = CountAnchors(anchors, triangles);
+  Map<float> lead(depth.width(), depth.height());
+  for (int row = 0; row < depth.height(); ++row) {
+    for (int col = 0; col < depth.width(); ++col) {
+      if (IsDepth(candidates.At(row, col))) {
+        const int triangle = triangles.index.At(row, col);
+        const Plane plane = PlaneOf(depth.At(row, col), normal.At(row, col),
+                                    camera.Ray(row, col));
+        lead.At(row, col) =
+            static_cast<float>(view_votes.At(row, col) + own_anchors[triangle] -
+                               anchors.Count(triangle, plane));
+      }
+    }
+  }
+  return lead;
+}
+
+// The same as the mean over similar pixels nearby.
+Map<float> MeanLead(const Options& options, const Problem& problem,
+                    const Map<float>& candidates, const Map<float>& lead) {
+  Map<float> weights(lead.width(), lead.height());
+  for (size_t i = 0; i < weights.size(); ++i) {
+    weights.data()[i] = IsDepth(candidates.data()[i]) ? 1.0f : 0.0f;
+  }
+  const int radius =
+      static_cast<int>(options.tapa.completion_radius * lead.width());
+  return MeanOverSimilarPixels(*problem.reference.image, lead, weights, radius,
+                               options.tapa.textureness_variance);
+}
+
 }  // namespace
 
 void CompleteWithTriangles(const Options& options, const Problem& problem,
@@ -67,24 +119,22 @@ void CompleteWithTriangles(const Options& options, const Problem& problem,
   const TrianglePlanes triangles = TriangulateAnchors(
       camera, trusted,
       FindAnchors(options.tapa, trusted, textureness, kClearTexture));
-  const Map<float> candidates =
+  Map<float> candidates =
       Candidates(options, problem, camera, textureness, triangles);
-  const Map<int16_t> votes =
+  const Map<int16_t> view_votes =
       CountVotes(options, problem, control, candidates, *depth);
-  const AnchorVotes anchors(
-      triangles, kAnchorTolerance * options.tapa.relative_plane_distance);
-  const std::vector<int> own_anchors = CountAnchors(anchors, triangles);
+  if (control.IsStopped()) {
+    return;
+  }
+  RemoveContradicted(view_votes, &candidates);
+  const Map<float> lead = CountLead(options, camera, triangles, candidates,
+                                    view_votes, *depth, *normal);
+  const Map<float> mean_lead = MeanLead(options, problem, candidates, lead);
   for (int row = 0; row < depth->height(); ++row) {
     for (int col = 0; col < depth->width(); ++col) {
-      if (!IsDepth(candidates.At(row, col))) {
-        continue;
-      }
-      const int triangle = triangles.index.At(row, col);
-      const Plane plane = PlaneOf(depth->At(row, col), normal->At(row, col),
-                                  camera.Ray(row, col));
-      if (votes.At(row, col) + own_anchors[triangle] -
-              anchors.Count(triangle, plane) >=
-          kMinNumVotes) {
+      // A pixel counts as much as all around it.
+      const float votes = 0.5f * (lead.At(row, col) + mean_lead.At(row, col));
+      if (IsDepth(candidates.At(row, col)) && votes >= kMinNumVotes) {
         depth->At(row, col) = candidates.At(row, col);
         normal->At(row, col) = triangles.At(camera, row, col).normal;
         origin->At(row, col) = kFromPlane;
