@@ -59,16 +59,6 @@ Plane PlaneOf(float depth, const Vec3& normal, const Vec3& ray) {
   return {normal, -depth * Dot(normal, ray)};
 }
 
-// Removes what views speak against.
-void RemoveContradicted(const Map<int16_t>& view_votes,
-                        Map<float>* candidates) {
-  for (size_t i = 0; i < candidates->size(); ++i) {
-    if (view_votes.data()[i] < kMinViewVotes) {
-      candidates->data()[i] = 0;
-    }
-  }
-}
-
 // How many more votes, of views and of anchors, the candidates have than the
 // estimates; 0 where there is no candidate.
 Map<float> CountLead(const Options& options, const RefCamera& camera,
@@ -119,14 +109,13 @@ void CompleteWithTriangles(const Options& options, const Problem& problem,
   const TrianglePlanes triangles = TriangulateAnchors(
       camera, trusted,
       FindAnchors(options.tapa, trusted, textureness, kClearTexture));
-  Map<float> candidates =
+  const Map<float> candidates =
       Candidates(options, problem, camera, textureness, triangles);
   const Map<int16_t> view_votes =
       CountVotes(options, problem, control, candidates, *depth);
   if (control.IsStopped()) {
     return;
   }
-  RemoveContradicted(view_votes, &candidates);
   const Map<float> lead = CountLead(options, camera, triangles, candidates,
                                     view_votes, *depth, *normal);
   const Map<float> mean_lead = MeanLead(options, problem, candidates, lead);
@@ -134,7 +123,8 @@ void CompleteWithTriangles(const Options& options, const Problem& problem,
     for (int col = 0; col < depth->width(); ++col) {
       // A pixel counts as much as all around it.
       const float votes = 0.5f * (lead.At(row, col) + mean_lead.At(row, col));
-      if (IsDepth(candidates.At(row, col)) && votes >= kMinNumVotes) {
+      if (IsDepth(candidates.At(row, col)) && votes >= kMinNumVotes &&
+          view_votes.At(row, col) >= kMinViewVotes) {
         depth->At(row, col) = candidates.At(row, col);
         normal->At(row, col) = triangles.At(camera, row, col).normal;
         origin->At(row, col) = kFromPlane;
