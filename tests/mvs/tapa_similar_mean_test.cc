@@ -123,5 +123,23 @@ TEST(SimilarMean, LeavesOutWhatDoesNotCount) {
   }
 }
 
+// completion_radius may be 0 or all of the width, and images may be tiny.
+TEST(SimilarMean, TakesAnyRadius) {
+  const Map<uint8_t> image(7, 1, 50);
+  Map<float> values(7, 1);
+  const Map<float> weights(7, 1, 1);
+  for (int col = 0; col < 7; ++col) {
+    values.At(0, col) = static_cast<float>(col);
+  }
+  const Map<float> same =
+      MeanOverSimilarPixels(image, values, weights, 0, 0.00005);
+  const Map<float> wide =
+      MeanOverSimilarPixels(image, values, weights, 700, 0.00005);
+  for (int col = 0; col < 7; ++col) {
+    EXPECT_NEAR(same.At(0, col), values.At(0, col), 1e-3);
+    EXPECT_NEAR(wide.At(0, col), 3, 0.05);
+  }
+}
+
 }  // namespace
 }  // namespace tapa
