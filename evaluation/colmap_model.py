@@ -115,6 +115,14 @@ def check_name(name, path):
                       "or is no name of a file; rename it there")
 
 
+def name_in(line):
+    """The name in the line of a photograph: the rest after nine numbers, and a blank."""
+    fields = line.split(" ", 9)
+    if len(fields) == 10 and all(fields[:9]):
+        return fields[9].rstrip()
+    return line.split(maxsplit=9)[-1].strip()
+
+
 def read_cameras(path):
     """Cameras by their numbers."""
     cameras = {}
@@ -149,7 +157,9 @@ def read_views(folder):
         try:
             pose = [float(value) for value in fields[1:8]]
             check_finite(pose)
-            view = View(int(fields[0]), fields[9].strip(), cameras[int(fields[8])],
+            if len(fields) < 10:
+                raise IndexError("no name")
+            view = View(int(fields[0]), name_in(line), cameras[int(fields[8])],
                         rotation_of(pose[:4]), np.array(pose[4:7]))
         except (IndexError, KeyError, ValueError) as error:
             raise Failure(f"{path}: no photograph of a known camera in the line "

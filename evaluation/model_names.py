@@ -18,19 +18,11 @@ def read_names(folder):
         lines = files.read_bytes(text).decode("utf-8-sig", errors="surrogateescape").split("\n")
         lines = [line.rstrip("\r") for line in lines if not line.startswith("#")]
         # A line of observations follows each photograph's own.
-        names = [_name_in(line) for line in lines[0::2] if line.strip()]
+        names = [colmap_model.name_in(line) for line in lines[0::2] if line.strip()]
         for name in names:
             colmap_model.check_name(name, text)
         return names
     return None
-
-
-def _name_in(line):
-    """The rest of a line after nine numbers, and a blank."""
-    fields = line.split(" ", 9)
-    if len(fields) == 10 and all(fields[:9]):
-        return fields[9].rstrip()
-    return line.split(maxsplit=9)[-1].strip()
 
 
 def photographs(data):

@@ -49,6 +49,19 @@ void NoteMessage(FREE_IMAGE_FORMAT, const char* message) {
                 " cannot be read; is it there, and is it a whole image?");
 }
 
+// Of a strip that is scaled down.
+void CheckThatPixelsAreLeft(const SceneView& view, int longest_side) {
+  if (view.width < 1 || view.height < 1) {
+    throw Failure("The image " + view.image_path + " has " +
+                  SizeText(view.photo_width, view.photo_height) +
+                  " pixels, so that nothing is left of it at a longest side "
+                  "of " +
+                  std::to_string(longest_side) +
+                  "; take it out of the model, or give a larger "
+                  "max_image_size and fewer num_levels");
+  }
+}
+
 colmap::Bitmap ReadScaled(const SceneView& view, bool in_color) {
   colmap::Bitmap bitmap = ReadBitmap(view.image_path, in_color,
                                      view.photo_width, view.photo_height);
@@ -80,6 +93,7 @@ std::vector<SceneView> SceneViews(const colmap::mvs::Model& model,
     image.Downsize(size_at_level, size_at_level);
     view.width = static_cast<int>(image.GetWidth());
     view.height = static_cast<int>(image.GetHeight());
+    CheckThatPixelsAreLeft(view, size_at_level);
     view.camera = ToCamera(image);
     view.depth_min = depth_ranges[i].first;
     view.depth_max = depth_ranges[i].second;

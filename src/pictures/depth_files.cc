@@ -6,9 +6,12 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <regex>
+#include <set>
+#include <string>
 #include <vector>
 
 #include "src/base/failure.h"
@@ -94,19 +97,75 @@ HeaderSize PfmSize(const Bytes& bytes) {
   return {std::stoi(size[1]), std::stoi(size[2])};
 }
 
+// The text that a 0 ends, in [at, end); without a 0, all of it.
+std::string TextAt(const Bytes& bytes, size_t at, size_t end) {
+  const auto first = bytes.begin() + std::min(at, end);
+  const auto last = bytes.begin() + end;
+  return std::string(first, std::find(first, last, '\0'));
+}
+
+// Whether [at, end) is a list of channels, each with its name, type and
+// sampling, that an empty name ends.
+bool IsChannelList(const Bytes& bytes, size_t at, size_t end) {
+  constexpr size_t kTypeAndSampling = 16;
+  while (at < end) {
+    const std::string name = TextAt(bytes, at, end);
+    if (name.empty()) {
+      return at + 1 == end;
+    }
+    at += name.size() + 1 + kTypeAndSampling;
+  }
+  return false;
+}
+
+// Whether the library takes as many bytes for an attribute of this type as are
+// said to be there, [at, end). Where it takes others, what it goes on with is
+// no attribute, and of a size that nobody has looked at. What it asks more
+// memory for than for the bytes themselves is not among them.
+bool HasSizeOfType(const Bytes& bytes, const std::string& type, size_t at,
+                   size_t end) {
+  static const std::map<std::string, size_t> kSizes = {{"box2f", 16},
+                                                       {"box2i", 16},
+                                                       {"chromaticities", 32},
+                                                       {"compression", 1},
+                                                       {"deepImageState", 1},
+                                                       {"double", 8},
+                                                       {"envmap", 1},
+                                                       {"float", 4},
+                                                       {"int", 4},
+                                                       {"keycode", 28},
+                                                       {"lineOrder", 1},
+                                                       {"m33d", 72},
+                                                       {"m33f", 36},
+                                                       {"m44d", 128},
+                                                       {"m44f", 64},
+                                                       {"rational", 8},
+                                                       {"tiledesc", 9},
+                                                       {"timecode", 8},
+                                                       {"v2d", 16},
+                                                       {"v2f", 8},
+                                                       {"v2i", 8},
+                                                       {"v3d", 24},
+                                                       {"v3f", 12},
+                                                       {"v3i", 12}};
+  static const std::set<std::string> kOthers = {"floatvector", "idmanifest",
+                                                "preview", "stringvector"};
+  const auto size = kSizes.find(type);
+  return size != kSizes.end() ? end - at == size->second
+         : type == "chlist"   ? IsChannelList(bytes, at, end)
+                              : kOthers.count(type) == 0;
+}
+
 // Of the attributes of the header, each with its name, its type and the number
 // of its bytes, the one that says where there are pixels. The last one counts.
 HeaderSize ExrSize(const Bytes& bytes) {
   constexpr size_t kBegin = 8;  // Behind magic number and version.
   HeaderSize size;
-  const auto text_at = [&bytes](size_t at) {
-    const auto begin = bytes.begin() + std::min(at, bytes.size());
-    return std::string(begin, std::find(begin, bytes.end(), '\0'));
-  };
   for (size_t at = kBegin;;) {
-    const std::string name = text_at(at);
+    const std::string name = TextAt(bytes, at, bytes.size());
     at += name.size() + 1;
-    at += text_at(at).size() + 1;
+    const std::string type = TextAt(bytes, at, bytes.size());
+    at += type.size() + 1;
     if (name.empty()) {
       return size;
     }
@@ -117,7 +176,8 @@ HeaderSize ExrSize(const Bytes& bytes) {
     std::memcpy(&num_bytes, bytes.data() + at, sizeof(num_bytes));
     at += sizeof(num_bytes);
     // The library would take so many bytes before it reads them.
-    if (num_bytes > bytes.size() - at) {
+    if (num_bytes > bytes.size() - at ||
+        !HasSizeOfType(bytes, type, at, at + num_bytes)) {
       return {};
     }
     int32_t box[4];  // Smallest x and y, largest x and y.

@@ -195,6 +195,27 @@ TEST(SceneViews, ScaleTheCameraByTheExactRatioOfEachAxis) {
   }
 }
 
+TEST(SceneViews, RefuseStripsOfWhichNothingIsLeft) {
+  const TestFolder folder;
+  std::filesystem::create_directory(folder.Path("sparse"));
+  std::ofstream(folder.Path("sparse/cameras.txt"))
+      << "1 PINHOLE 4 46080 500 500 2 23040\n";
+  std::ofstream(folder.Path("sparse/images.txt"))
+      << "1 1 0 0 0 0 0 0 1 strip.png\n\n";
+  std::ofstream(folder.Path("sparse/points3D.txt"));
+  colmap::mvs::Model model;
+  model.ReadFromCOLMAP(folder.Path(""));
+  EXPECT_EQ(SceneViews(model, -1)[0].width, 4);
+  try {
+    SceneViews(model, 2000);
+    FAIL();
+  } catch (const Failure& error) {
+    EXPECT_NE(std::string(error.what()).find("strip.png has 4x46080"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
 TEST(ReadColorPhoto, RefusesWhatReadPhotoRefuses) {
   const TestFolder folder;
   SceneView view = SomeView(folder.Path("a.png"));

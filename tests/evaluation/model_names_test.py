@@ -5,7 +5,7 @@ import struct
 import subprocess
 
 from helpers import ROOT, TestCase
-from evaluation import model_names, workspaces
+from evaluation import colmap_model, model_names, workspaces
 from evaluation.processes import Failure
 
 NAMES = ["a b.jpg", "#1, left.png", " c.jpg", "sub/d.jpg"]
@@ -42,6 +42,12 @@ class ModelNamesTest(TestCase):
         os.truncate(self.path("sparse/images.bin"), 100)
         with self.assertRaisesRegex(Failure, "images.bin"):
             model_names.read_names(self.path("sparse"))
+
+    def test_views_have_the_same_names(self):
+        self.write_text()
+        self.write("sparse/cameras.txt", b"1 PINHOLE 640 480 500 500 320 240\n")
+        views = colmap_model.read_views(self.path("sparse"))
+        self.assertEqual(sorted(view.name for view in views), sorted(NAMES))
 
     def test_stray_files_are_no_photographs(self):
         self.write_binary()

@@ -234,6 +234,31 @@ TEST_F(DepthFiles, RefusesExrAttributesThatAreLargerThanTheFile) {
   EXPECT_NE(ErrorOf(Write("a.exr", bytes)).find("damaged"), std::string::npos);
 }
 
+// The library takes as many bytes as the type needs, and would read the rest,
+// and the sizes there, as attributes. So such a header counts for nothing.
+TEST_F(DepthFiles, RefusesExrAttributesOfAnotherSizeThanTheirType) {
+  cv::imwrite(Path("a.exr"), Floats());
+  const std::string bytes = Read("a.exr");
+  // The pixels are not where they should be then, but the header is.
+  const auto accepts = [&](const std::string& attribute) {
+    bool was_asked = false;
+    try {
+      ReadDepthFile(Write("b.exr", std::string(bytes).insert(8, attribute)),
+                    [&](int, int) { was_asked = true; });
+    } catch (const Failure& error) {
+      EXPECT_NE(std::string(error.what()).find("damaged"), std::string::npos);
+    }
+    return was_asked;
+  };
+  EXPECT_TRUE(accepts(std::string("a\0compression\0\1\0\0\0\0", 19)));
+  EXPECT_FALSE(accepts(std::string("a\0compression\0\2\0\0\0\0\0", 20)));
+  EXPECT_TRUE(accepts(std::string("a\0chlist\0\1\0\0\0\0", 14)));
+  EXPECT_FALSE(accepts(std::string("a\0chlist\0\2\0\0\0b\0", 15)));
+  EXPECT_FALSE(
+      accepts(std::string("a\0preview\0\x8\0\0\0\0\x40\0\0\0\x40\0\0", 22)));
+  EXPECT_TRUE(accepts(std::string("a\0other\0\2\0\0\0bc", 14)));
+}
+
 TEST_F(DepthFiles, RefusesLongHeaders) {
   // Blanks that a search would have to pass over.
   const std::string blanks(1000000, ' ');
