@@ -79,10 +79,15 @@ def check_finite(pose):
         raise ValueError(f"{pose} is no pose")
 
 
+def lines_in(text):
+    """Those that are no comments. Only a line feed, with or without a carriage return, ends one."""
+    return [line.rstrip("\r") for line in text.split("\n") if not line.startswith("#")]
+
+
 def _lines(path):
     try:
-        with open(path, encoding="utf-8-sig") as file:
-            return [line for line in file.read().split("\n") if not line.startswith("#")]
+        with open(path, encoding="utf-8-sig", newline="\n") as file:
+            return lines_in(file.read())
     except (OSError, UnicodeDecodeError) as error:
         raise Failure(f"{path} cannot be read: {error}") from error
 

@@ -15,8 +15,8 @@ def read_names(folder):
     if os.path.exists(binary):
         return [name for *_, name in binary_model.read_images(binary)]
     if os.path.exists(text):
-        lines = files.read_bytes(text).decode("utf-8-sig", errors="surrogateescape").split("\n")
-        lines = [line.rstrip("\r") for line in lines if not line.startswith("#")]
+        lines = colmap_model.lines_in(
+            files.read_bytes(text).decode("utf-8-sig", errors="surrogateescape"))
         # A line of observations follows each photograph's own.
         names = [colmap_model.name_in(line) for line in lines[0::2] if line.strip()]
         for name in names:

@@ -46,8 +46,15 @@ class ModelNamesTest(TestCase):
     def test_views_have_the_same_names(self):
         self.write_text()
         self.write("sparse/cameras.txt", b"1 PINHOLE 640 480 500 500 320 240\n")
-        views = colmap_model.read_views(self.path("sparse"))
-        self.assertEqual(sorted(view.name for view in views), sorted(NAMES))
+        for end in ("\n", "\r\n"):
+            self.write_text(end=end)
+            views = colmap_model.read_views(self.path("sparse"))
+            self.assertEqual(sorted(view.name for view in views), sorted(NAMES))
+        # A carriage return alone ends no line, and is no part of a name.
+        self.write("sparse/images.txt", b"1 1 0 0 0 0 0 0 1 a\rb.jpg\n\n")
+        for read in (colmap_model.read_views, model_names.read_names):
+            with self.assertRaisesRegex(Failure, "no name of a file"):
+                read(self.path("sparse"))
 
     def test_stray_files_are_no_photographs(self):
         self.write_binary()
