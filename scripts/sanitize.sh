@@ -35,7 +35,7 @@ left_out+='|^end_to_end\.(quality|interchange|eth3d|evaluate|install|memory|secu
 # is nothing to find in long estimations; and ThreadSanitizer, which cannot follow exceptions out of
 # such turns, ends where thousands of kernels fail.
 [[ $kind == address ]] ||
-  left_out+='|^end_to_end\.(automatic|gui)|\.full_size$|^cuda_estimate_emulated|SurvivesAnyFailure'
+  left_out+='|^end_to_end\.(automatic|gui|emulated_gpu)|\.full_size$|^cuda_estimate_emulated|SurvivesAnyFailure|^gpu_benchmark_emulated'
 
 suppressions=$root/tests/sanitizers
 # A test asks for more memory than there can be, and for an answer to it. COLMAP's Poisson mesher
