@@ -120,8 +120,7 @@ bool IsChannelList(const Bytes& bytes, size_t at, size_t end) {
 
 // Whether the library takes as many bytes for an attribute of this type as are
 // said to be there, [at, end). Where it takes others, what it goes on with is
-// no attribute, and of a size that nobody has looked at. What it asks more
-// memory for than for the bytes themselves is not among them.
+// no attribute, and of a size that nobody has looked at.
 bool HasSizeOfType(const Bytes& bytes, const std::string& type, size_t at,
                    size_t end) {
   static const std::map<std::string, size_t> kSizes = {{"box2f", 16},
@@ -148,17 +147,26 @@ bool HasSizeOfType(const Bytes& bytes, const std::string& type, size_t at,
                                                        {"v3d", 24},
                                                        {"v3f", 12},
                                                        {"v3i", 12}};
-  static const std::set<std::string> kOthers = {"floatvector", "idmanifest",
-                                                "preview", "stringvector"};
   const auto size = kSizes.find(type);
-  return size != kSizes.end() ? end - at == size->second
-         : type == "chlist"   ? IsChannelList(bytes, at, end)
-                              : kOthers.count(type) == 0;
+  return size != kSizes.end()
+             ? end - at == size->second
+             : type != "chlist" || IsChannelList(bytes, at, end);
+}
+
+// The library takes memory for what is said inside of these; no depth map needs
+// them.
+void CheckExrType(const std::string& path, const std::string& type) {
+  static const std::set<std::string> kUnread = {"floatvector", "idmanifest",
+                                                "preview", "stringvector"};
+  if (kUnread.count(type) != 0) {
+    Fail(path, "has an attribute of type " + type +
+                   " in its header, which is not read; save it without");
+  }
 }
 
 // Of the attributes of the header, each with its name, its type and the number
 // of its bytes, the one that says where there are pixels. The last one counts.
-HeaderSize ExrSize(const Bytes& bytes) {
+HeaderSize ExrSize(const std::string& path, const Bytes& bytes) {
   constexpr size_t kBegin = 8;  // Behind magic number and version.
   HeaderSize size;
   for (size_t at = kBegin;;) {
@@ -169,6 +177,7 @@ HeaderSize ExrSize(const Bytes& bytes) {
     if (name.empty()) {
       return size;
     }
+    CheckExrType(path, type);
     uint32_t num_bytes = 0;
     if (at + sizeof(num_bytes) > bytes.size()) {
       return {};
@@ -192,7 +201,7 @@ HeaderSize ExrSize(const Bytes& bytes) {
 HeaderSize SizeInHeader(const std::string& path, const Bytes& bytes) {
   return EndsWith(path, ".png")   ? PngSize(bytes)
          : EndsWith(path, ".pfm") ? PfmSize(bytes)
-                                  : ExrSize(bytes);
+                                  : ExrSize(path, bytes);
 }
 
 void CheckHeader(const std::string& path, const HeaderSize& size,

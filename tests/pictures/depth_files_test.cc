@@ -246,7 +246,10 @@ TEST_F(DepthFiles, RefusesExrAttributesOfAnotherSizeThanTheirType) {
       ReadDepthFile(Write("b.exr", std::string(bytes).insert(8, attribute)),
                     [&](int, int) { was_asked = true; });
     } catch (const Failure& error) {
-      EXPECT_NE(std::string(error.what()).find("damaged"), std::string::npos);
+      const std::string line = error.what();
+      EXPECT_TRUE(line.find("damaged") != std::string::npos ||
+                  line.find("of type preview") != std::string::npos)
+          << line;
     }
     return was_asked;
   };
