@@ -168,6 +168,16 @@ void CheckExrType(const std::string& path, const std::string& type) {
 // of its bytes, the one that says where there are pixels. The last one counts.
 HeaderSize ExrSize(const std::string& path, const Bytes& bytes) {
   constexpr size_t kBegin = 8;  // Behind magic number and version.
+  // OpenCV goes by these, not by names, and looks for medical images, whose
+  // library ends the program where they are damaged, before it looks for EXR.
+  constexpr char kMagic[] = "\x76\x2f\x31\x01";
+  constexpr char kMedicalMagic[] = "DICM";
+  constexpr size_t kMedicalBegin = 128;
+  if (bytes.size() < kBegin || std::memcmp(bytes.data(), kMagic, 4) != 0 ||
+      (bytes.size() >= kMedicalBegin + 4 &&
+       std::memcmp(bytes.data() + kMedicalBegin, kMedicalMagic, 4) == 0)) {
+    return {};
+  }
   HeaderSize size;
   for (size_t at = kBegin;;) {
     const std::string name = TextAt(bytes, at, bytes.size());
@@ -288,14 +298,15 @@ Map<float> ReadDepthFile(const std::string& path, const SizeCheck& check_size) {
     image = DecodeNpy(path, bytes);  // No larger than the file.
     check_size(image.cols, image.rows);
   } else {
-    CheckHeader(path, SizeInHeader(path, bytes), check_size);
+    const HeaderSize size = SizeInHeader(path, bytes);
+    CheckHeader(path, size, check_size);
     if (EndsWith(path, ".exr")) {
       RenameExrChannel(&bytes);
     }
     image = Decode(bytes);
-  }
-  if (image.empty()) {
-    FailAsDamaged(path);
+    if (image.cols != size.width || image.rows != size.height) {
+      FailAsDamaged(path);
+    }
   }
   if (image.channels() != 1 || image.depth() == CV_8U) {
     Fail(path,

@@ -234,6 +234,24 @@ TEST_F(DepthFiles, RefusesExrAttributesThatAreLargerThanTheFile) {
   EXPECT_NE(ErrorOf(Write("a.exr", bytes)).find("damaged"), std::string::npos);
 }
 
+// Otherwise the size that was checked would be that of another format.
+TEST_F(DepthFiles, RefusesWhatHasTheNameOfAnotherFormat) {
+  cv::imwrite(Path("a.exr"), Floats());
+  const std::string attributes = Read("a.exr").substr(8);
+  const std::string pfm = "Pf\n3 2\n-";
+  EXPECT_NE(
+      ErrorOf(Write("b.exr", pfm.substr(0, 8) + attributes)).find("damaged"),
+      std::string::npos);
+  cv::imwrite(Path("a.pfm"), Floats());
+  EXPECT_NE(ErrorOf(Write("c.exr", Read("a.pfm"))).find("damaged"),
+            std::string::npos);
+  // A medical image, to OpenCV.
+  std::string medical = Read("a.exr");
+  medical.replace(128, 4, "DICM");
+  EXPECT_NE(ErrorOf(Write("d.exr", medical)).find("damaged"),
+            std::string::npos);
+}
+
 // The library takes as many bytes as the type needs, and would read the rest,
 // and the sizes there, as attributes. So such a header counts for nothing.
 TEST_F(DepthFiles, RefusesExrAttributesOfAnotherSizeThanTheirType) {
