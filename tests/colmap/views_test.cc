@@ -170,16 +170,23 @@ TEST(ReadPhoto, ScalesWithoutAliasing) {
   }
 }
 
-TEST(SceneViews, ScaleTheCameraByTheExactRatioOfEachAxis) {
-  const TestFolder folder;
+// Of one photograph, a.png.
+colmap::mvs::Model ModelWithCamera(const TestFolder& folder,
+                                   const std::string& camera) {
   std::filesystem::create_directory(folder.Path("sparse"));
-  std::ofstream(folder.Path("sparse/cameras.txt"))
-      << "1 PINHOLE 1001 667 800 810 510.5 333.25\n";
+  std::ofstream(folder.Path("sparse/cameras.txt")) << "1 " << camera << "\n";
   std::ofstream(folder.Path("sparse/images.txt"))
       << "1 1 0 0 0 0 0 0 1 a.png\n\n";
   std::ofstream(folder.Path("sparse/points3D.txt"));
   colmap::mvs::Model model;
   model.ReadFromCOLMAP(folder.Path(""));
+  return model;
+}
+
+TEST(SceneViews, ScaleTheCameraByTheExactRatioOfEachAxis) {
+  const TestFolder folder;
+  const colmap::mvs::Model model =
+      ModelWithCamera(folder, "PINHOLE 1001 667 800 810 510.5 333.25");
   for (const int size : {1000, 640, 500, 333, 50}) {
     const std::vector<SceneView> views = SceneViews(model, size);
     ASSERT_EQ(views.size(), 1u);
@@ -197,20 +204,14 @@ TEST(SceneViews, ScaleTheCameraByTheExactRatioOfEachAxis) {
 
 TEST(SceneViews, RefuseStripsOfWhichNothingIsLeft) {
   const TestFolder folder;
-  std::filesystem::create_directory(folder.Path("sparse"));
-  std::ofstream(folder.Path("sparse/cameras.txt"))
-      << "1 PINHOLE 4 46080 500 500 2 23040\n";
-  std::ofstream(folder.Path("sparse/images.txt"))
-      << "1 1 0 0 0 0 0 0 1 strip.png\n\n";
-  std::ofstream(folder.Path("sparse/points3D.txt"));
-  colmap::mvs::Model model;
-  model.ReadFromCOLMAP(folder.Path(""));
+  const colmap::mvs::Model model =
+      ModelWithCamera(folder, "PINHOLE 4 46080 500 500 2 23040");
   EXPECT_EQ(SceneViews(model, -1)[0].width, 4);
   try {
     SceneViews(model, 2000);
     FAIL();
   } catch (const Failure& error) {
-    EXPECT_NE(std::string(error.what()).find("strip.png has 4x46080"),
+    EXPECT_NE(std::string(error.what()).find("a.png has 4x46080"),
               std::string::npos)
         << error.what();
   }

@@ -19,7 +19,8 @@ constexpr double kClearTexture = 0.7;
 // More for a triangle than for the estimate: those of its own corners, which
 // lie on it, whatever it is.
 constexpr float kMinNumVotes = 3;
-// Of views: what four see through is free space, whatever lies around it.
+// Of views: what more than four see through is free space, whatever lies around
+// it.
 constexpr int kMinViewVotes = -8;
 // Times tapa_relative_plane_distance: anchors are further away than what a
 // plane was fitted to.
