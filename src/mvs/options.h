@@ -144,14 +144,15 @@ void VisitTapaOptions(Options* options, const Visitor& visit) {
          Range::From(0, 1));
 }
 
-// How much is tried before an estimate is kept, where COLMAP has no choice.
-// What each is for stands in VisitSearchOptions. COLMAP's own: true, any, true
-// and 0.
+// How much is tried before an estimate is kept, and how it is measured, where
+// COLMAP has no choice. What each is for stands in VisitSearchOptions. COLMAP's
+// own: true, any, true, 0 and 0.
 struct SearchOptions {
   bool try_all = false;
   double random_share = 0.5;
   bool measure_all = false;
   double hysteresis = 0.12;
+  double sigma_textured = 2;
 };
 
 // The table of these options, as VisitTapaOptions.
@@ -181,13 +182,20 @@ void VisitSearchOptions(Options* options, const Visitor& visit) {
                     "less",
                     OptionRange::From(0, 2)},
         &options->hysteresis);
+  visit(OptionEntry{"sigma_textured",
+                    "Spread of the window's weights over distance in pixels "
+                    "where there is texture, so that the window is no larger "
+                    "than what it needs to see; the less there is, the more it "
+                    "is sigma_spatial. 0: sigma_spatial everywhere"},
+        &options->sigma_textured);
 }
 
 // Parameters of one depth map estimation. The defaults are COLMAP's
 // (Schoenberger et al., "Pixelwise View Selection for Unstructured Multi-View
 // Stereo", ECCV 2016), but for fewer samples (15 there, in every row
 // and column of the window), iterations (5) and random changes (SearchOptions),
-// and weights that fall off faster with colour (sigma_color 0.2), so that
+// and weights that fall off faster with colour (sigma_color 0.2) and, where
+// there is texture, with distance (SearchOptions::sigma_textured), so that
 // surfaces do not grow over those behind them.
 // Angles are in degrees.
 struct Options {

@@ -1,5 +1,7 @@
 #include "src/mvs/window_shape.h"
 
+#include <algorithm>
+
 namespace tapa {
 
 WindowShape::WindowShape(const Options& options)
@@ -8,9 +10,14 @@ WindowShape::WindowShape(const Options& options)
       row_samples(2 * radius / step + 1),
       has_corners(step == 1 || row_samples < 4),
       sigma_spatial(options.sigma_spatial > 0 ? options.sigma_spatial : radius),
+      sigma_textured(
+          options.search.sigma_textured > 0
+              ? std::min(options.search.sigma_textured, sigma_spatial)
+              : sigma_spatial),
       sigma_color(options.sigma_color) {
   const double sigma_intensity = 255 * sigma_color;
   spatial_scale = static_cast<float>(-0.5 / (sigma_spatial * sigma_spatial));
+  textured_scale = static_cast<float>(-0.5 / (sigma_textured * sigma_textured));
   color_scale = static_cast<float>(-0.5 / (sigma_intensity * sigma_intensity));
 }
 

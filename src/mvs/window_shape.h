@@ -6,7 +6,18 @@
 
 namespace tapa {
 
-// The correlation window and its bilateral weights.
+// The correlation window and its weights: that of a sample for its distance
+// from the centre times that for its difference in intensity from it. The first
+// falls off with sigma_spatial where there is no texture and with
+// sigma_textured where there is much: the share of the latter is
+//
+//   Var / (Var + kTexture),
+//
+// with the variance of intensities, 0 to 1, in the window under the weights of
+// sigma_textured alone. That is the textureness of TAPA-MVS (textureness.h)
+// with a t_min of 0. A surface that shows little needs a large window, others
+// are told apart better by a small one (Kanade and Okutomi, "A Stereo Matching
+// Algorithm with an Adaptive Window", PAMI 1994).
 struct WindowShape {
   WindowShape() = default;
   explicit WindowShape(const Options& options);
@@ -22,11 +33,20 @@ struct WindowShape {
   // Standard deviations of the weights: over distance in pixels, and over
   // difference in intensity (0 to 1).
   double sigma_spatial = 5;
+  double sigma_textured = 5;
   double sigma_color = 0.2;
   // For kernels, factors in the exponent of the weight: of the squared distance
   // in pixels and of the squared difference in intensity (0 to 255).
   float spatial_scale = 0;
+  float textured_scale = 0;
   float color_scale = 0;
+
+  // Share of sigma_textured. variance: of intensities of 0 to 255.
+  static TAPA_INLINE float Texture(float variance) {
+    // A standard deviation of 5.7 grey levels: e / t_min of TapaOptions.
+    constexpr float kTexture = 0.0005f * 255 * 255;
+    return variance / (variance + kTexture);
+  }
 
   // Samples are numbered row by row, without the corners that are missing.
   TAPA_INLINE int NumSamples() const {

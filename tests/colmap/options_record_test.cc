@@ -59,11 +59,12 @@ TEST(OptionsOfMaps, HasWhatChangesMaps) {
                            "random_share",
                            "measure_all",
                            "hysteresis",
+                           "sigma_textured",
                            "tapa",
                            "rays"}) {
     EXPECT_EQ(values.count(name), 1) << name;
   }
-  EXPECT_EQ(values.size(), 28) << "Is an option missing in the list above?";
+  EXPECT_EQ(values.size(), 29) << "Is an option missing in the list above?";
 }
 
 TEST(OptionsOfMaps, LeavesOutWhatNothingReads) {

@@ -52,7 +52,8 @@ DepthNormal RandomPlane(const Problem& problem, const Vec3& ray,
 // Largest difference to the reference over all pixels, views and random planes.
 // Pixels whose variance is at the threshold for having texture may fall on
 // either side of it.
-void CompareCosts(const Options& options, const Problem& problem) {
+void CompareCosts(const Options& options, const Problem& problem,
+                  bool has_few_samples = false) {
   const ProblemData data(options, problem);
   const RefCamera camera = data.cameras.reference();
   Patch patch(data.window);
@@ -60,7 +61,7 @@ void CompareCosts(const Options& options, const Problem& problem) {
   // Without SIMD all samples are added up one by one, which rounds more; few
   // samples may have so little contrast that rounding shows.
   const bool rounds_more =
-      InstructionSet() == std::string("SCALAR") || options.window_radius == 1;
+      InstructionSet() == std::string("SCALAR") || has_few_samples;
   const double tolerance = rounds_more ? 5e-4 : 1e-4;
   int num_informative = 0;
   for (int row = 0; row < data.height; row += 3) {
@@ -101,7 +102,7 @@ TEST(Correlation, AgreesWithReferenceForAllWindows) {
       options.window_step = step;
       options.sigma_color = 0.1 + 0.02 * radius;
       options.sigma_spatial = step == 1 ? -1 : 3;
-      CompareCosts(options, scene.problem());
+      CompareCosts(options, scene.problem(), radius == 1);
     }
   }
 }
@@ -117,7 +118,9 @@ TEST(Correlation, AgreesWithReferenceOnNoise) {
   for (View& view : problem.sources) {
     view.image = &b;
   }
-  CompareCosts(Options(), problem);
+  // All is texture, so few samples count, and of those few have the colour of
+  // the centre.
+  CompareCosts(Options(), problem, true);
 }
 
 TEST(Correlation, IsZeroAtTheTruthAndTwoWithoutTexture) {

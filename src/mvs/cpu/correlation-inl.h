@@ -29,6 +29,40 @@ using FloatTag = hn::CappedTag<float, 16>;
 using FloatVec = hn::Vec<FloatTag>;
 using IntTag = hn::RebindToSigned<FloatTag>;
 
+// Reads the intensities of the patch around a pixel. Returns the share of
+// sigma_textured in its weights (WindowShape).
+HWY_INLINE float LoadIntensities(const Window& window, const RefImage& image,
+                                 const uint8_t* pixel, Patch* patch) {
+  const FloatTag d;
+  const IntTag di;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  const auto byte = hn::Set(di, 255);
+  const FloatVec center = hn::Set(d, *pixel);
+  FloatVec weight_sum = hn::Zero(d);
+  FloatVec sum = hn::Zero(d);
+  FloatVec squared_sum = hn::Zero(d);
+  for (int i = 0; i < window.padded_samples; i += lanes) {
+    const auto intensity = hn::And(
+        byte, hn::GatherOffset(di, reinterpret_cast<const int32_t*>(pixel),
+                               hn::Load(di, image.offsets() + i)));
+    const FloatVec value = hn::ConvertTo(d, intensity);
+    hn::Store(value, d, patch->weighted_intensity.get() + i);
+    // Less the centre's, so that small variances of bright patches are not lost
+    // to rounding.
+    const FloatVec difference = hn::Sub(value, center);
+    const FloatVec weight = hn::Load(d, window.textured_weight.get() + i);
+    const FloatVec weighted = hn::Mul(weight, difference);
+    weight_sum = hn::Add(weight_sum, weight);
+    sum = hn::Add(sum, weighted);
+    squared_sum = hn::MulAdd(weighted, difference, squared_sum);
+  }
+  const float inv_weight = 1.0f / hn::GetLane(hn::SumOfLanes(d, weight_sum));
+  const float mean = inv_weight * hn::GetLane(hn::SumOfLanes(d, sum));
+  const float variance =
+      inv_weight * hn::GetLane(hn::SumOfLanes(d, squared_sum)) - mean * mean;
+  return WindowShape::Texture(HWY_MAX(variance, 0.0f));
+}
+
 // Prepares the patch around a pixel of the reference image.
 HWY_INLINE void LoadPatch(const Window& window, const RefImage& image, int row,
                           int col, Patch* patch) {
@@ -37,21 +71,20 @@ HWY_INLINE void LoadPatch(const Window& window, const RefImage& image, int row,
   const int lanes = static_cast<int>(hn::Lanes(d));
 
   const uint8_t* pixel = image.At(row, col);
-  const auto byte = hn::Set(di, 255);
-  const auto center = hn::Set(di, *pixel);
+  const FloatVec texture =
+      hn::Set(d, LoadIntensities(window, image, pixel, patch));
+  const FloatVec center = hn::Set(d, *pixel);
   FloatVec weight_sum = hn::Zero(d);
   FloatVec sum = hn::Zero(d);
   for (int i = 0; i < window.padded_samples; i += lanes) {
-    const auto intensity = hn::And(
-        byte, hn::GatherOffset(di, reinterpret_cast<const int32_t*>(pixel),
-                               hn::Load(di, image.offsets() + i)));
-    const auto difference = hn::Abs(hn::Sub(intensity, center));
+    const FloatVec value = hn::Load(d, patch->weighted_intensity.get() + i);
+    const auto difference = hn::ConvertTo(di, hn::Abs(hn::Sub(value, center)));
+    const FloatVec plain = hn::Load(d, window.spatial_weight.get() + i);
+    const FloatVec textured = hn::Load(d, window.textured_weight.get() + i);
     const FloatVec weight =
-        hn::Mul(hn::Load(d, window.spatial_weight.get() + i),
+        hn::Mul(hn::MulAdd(texture, hn::Sub(textured, plain), plain),
                 hn::GatherIndex(d, window.color_weight.get(), difference));
-    const FloatVec value = hn::ConvertTo(d, intensity);
     hn::Store(weight, d, patch->weight.get() + i);
-    hn::Store(value, d, patch->weighted_intensity.get() + i);
     weight_sum = hn::Add(weight_sum, weight);
     sum = hn::MulAdd(weight, value, sum);
   }

@@ -17,6 +17,7 @@ Window::Window(const Options& options) : WindowShape(options) {
   dx = MakeAligned<float>(padded_samples);
   dy = MakeAligned<float>(padded_samples);
   spatial_weight = MakeAligned<float>(padded_samples);
+  textured_weight = MakeAligned<float>(padded_samples);
   color_weight = MakeAligned<float>(256);
 
   for (int i = 0; i < num_samples; ++i) {
@@ -25,8 +26,11 @@ Window::Window(const Options& options) : WindowShape(options) {
     const int y = place / row_samples * step - radius;
     dx[i] = static_cast<float>(x);
     dy[i] = static_cast<float>(y);
-    spatial_weight[i] = static_cast<float>(
-        std::exp(-(x * x + y * y) / (2 * sigma_spatial * sigma_spatial)));
+    const double squared_distance = x * x + y * y;
+    spatial_weight[i] =
+        static_cast<float>(std::exp(spatial_scale * squared_distance));
+    textured_weight[i] =
+        static_cast<float>(std::exp(textured_scale * squared_distance));
   }
   for (int difference = 0; difference < 256; ++difference) {
     const double d = difference / 255.0 / sigma_color;

@@ -20,14 +20,16 @@ struct Window : WindowShape {
   // Offsets of the samples from the centre, in pixels.
   hwy::AlignedFreeUniquePtr<float[]> dx;
   hwy::AlignedFreeUniquePtr<float[]> dy;
-  // Bilateral weight: the factor for a sample's distance from the centre (0 in
-  // the padding) and the one for a difference in intensity of 0 to 255.
+  // The factor of the weight for a sample's distance from the centre (0 in the
+  // padding), without texture and with, and the one for a difference in
+  // intensity of 0 to 255.
   hwy::AlignedFreeUniquePtr<float[]> spatial_weight;
+  hwy::AlignedFreeUniquePtr<float[]> textured_weight;
   hwy::AlignedFreeUniquePtr<float[]> color_weight;
 };
 
-// The reference patch around one pixel with its bilateral weights, which sum up
-// to 1. Intensities are 0 to 255 here.
+// The reference patch around one pixel with its weights, which sum up to 1.
+// Intensities are 0 to 255 here.
 struct Patch {
   explicit Patch(const Window& window);
 

@@ -23,15 +23,58 @@ struct PatchStatistics {
   float variance;
 };
 
-// Loads the patch around a pixel with its bilateral weights.
+// A lane's place in the window: where its sample i lies.
+struct SampleOffset {
+  TAPA_INLINE SampleOffset(const WindowShape& window, int row_samples, int i) {
+    const int place = window.PlaceOfSample(i);
+    dx = place % row_samples * window.step - window.radius;
+    dy = place / row_samples * window.step - window.radius;
+    squared_distance = static_cast<float>(dx * dx + dy * dy);
+  }
+
+  int dx, dy;
+  float squared_distance;
+};
+
+// Reads the intensities of the patch around a pixel. Returns the share of
+// sigma_textured in its weights (WindowShape).
+template <class Lanes, class Sizes, class Textures>
+TAPA_INLINE float LoadIntensities(const WindowShape& window,
+                                  const Textures& textures, int row, int col,
+                                  float center, PatchSample* samples) {
+  float weight_sum = 0.0f;
+  float sum = 0.0f;
+  float squared_sum = 0.0f;
+  for (int i = Lanes::First(); i < Sizes::NumSamples(window);
+       i += Lanes::Step()) {
+    const SampleOffset at(window, Sizes::RowSamples(window), i);
+    const float intensity = textures.Reference(col + at.dx, row + at.dy);
+    samples[i].weighted_intensity = intensity;
+    // Less the centre's, so that small variances of bright patches are not lost
+    // to rounding.
+    const float difference = intensity - center;
+    const float weight =
+        ExpNegative(window.textured_scale * at.squared_distance);
+    weight_sum += weight;
+    sum += weight * difference;
+    squared_sum += weight * difference * difference;
+  }
+  const float inv_weight = 1.0f / Lanes::Sum(weight_sum);
+  const float mean = inv_weight * Lanes::Sum(sum);
+  const float variance = inv_weight * Lanes::Sum(squared_sum) - mean * mean;
+  return WindowShape::Texture(fmaxf(variance, 0.0f));
+}
+
+// Loads the patch around a pixel with its weights.
 template <class Lanes, class Sizes, class Textures>
 TAPA_INLINE PatchStatistics LoadPatch(const WindowShape& window,
                                       const Textures& textures, int row,
                                       int col, PatchSample* samples) {
-  const int row_samples = Sizes::RowSamples(window);
   const int count = Sizes::NumSamples(window);
   const int padded_count = PaddedNumSamples<Lanes, Sizes>(window);
   const float center = textures.Reference(col, row);
+  const float texture = LoadIntensities<Lanes, Sizes>(window, textures, row,
+                                                      col, center, samples);
   float weight_sum = 0.0f;
   float sum = 0.0f;
   for (int i = Lanes::First(); i < padded_count; i += Lanes::Step()) {
@@ -39,16 +82,17 @@ TAPA_INLINE PatchStatistics LoadPatch(const WindowShape& window,
       samples[i] = {0.0f, 0.0f, 0.0f, 0.0f};
       continue;
     }
-    const int place = window.PlaceOfSample(i);
-    const int dx = place % row_samples * window.step - window.radius;
-    const int dy = place / row_samples * window.step - window.radius;
-    const float intensity = textures.Reference(col + dx, row + dy);
+    const SampleOffset at(window, Sizes::RowSamples(window), i);
+    const float intensity = samples[i].weighted_intensity;
     const float difference = intensity - center;
+    const float plain = ExpNegative(window.spatial_scale * at.squared_distance);
+    const float textured =
+        ExpNegative(window.textured_scale * at.squared_distance);
     const float weight =
-        ExpNegative(window.color_scale * difference * difference +
-                    window.spatial_scale * (dx * dx + dy * dy));
-    samples[i] = {weight, intensity, static_cast<float>(dx),
-                  static_cast<float>(dy)};
+        (plain + texture * (textured - plain)) *
+        ExpNegative(window.color_scale * difference * difference);
+    samples[i] = {weight, intensity, static_cast<float>(at.dx),
+                  static_cast<float>(at.dy)};
     weight_sum += weight;
     sum += weight * intensity;
   }
