@@ -45,6 +45,7 @@ TAPA_INLINE float LoadIntensities(const WindowShape& window,
   float weight_sum = 0.0f;
   float sum = 0.0f;
   float squared_sum = 0.0f;
+  TAPA_UNROLL(1)
   for (int i = Lanes::First(); i < Sizes::NumSamples(window);
        i += Lanes::Step()) {
     const SampleOffset at(window, Sizes::RowSamples(window), i);
