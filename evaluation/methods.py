@@ -14,7 +14,7 @@ def _stereo(**options):
 # options after it would do nothing.
 _COLMAP = _stereo(num_levels=1, num_iterations=5, num_geom_iterations=5, num_samples=15,
                   window_step=1, sigma_color=0.2, geom_perturbation=1, try_all=1, measure_all=1,
-                  hysteresis=0, sigma_textured=0)
+                  hysteresis=0, sigma_textured=-1)
 _TAPA = _stereo(tapa=1)
 _PAPER = _COLMAP + _TAPA + _stereo(tapa_completion=0, tapa_min_textureness=0.5)
 
@@ -38,7 +38,7 @@ for _name, _label, _options in (
         ("8-views", "8 views drawn", _stereo(num_samples=8)),
         ("full", "full windows", _stereo(window_step=1)),
         ("sigma", "sigma_color 0.2", _stereo(sigma_color=0.2)),
-        ("wide", "sigma_textured 0", _stereo(sigma_textured=0)),
+        ("wide", "sigma_textured -1", _stereo(sigma_textured=-1)),
         ("long", "4 iterations at every level", _stereo(num_fine_iterations=4)),
         ("short", "1 geometric iteration", _stereo(num_geom_iterations=1))):
     for _base in ("plain", "tapa"):

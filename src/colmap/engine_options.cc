@@ -67,7 +67,7 @@ void TakeColmapDefaults(PatchMatchOptions* options) {
   options->search.try_all = true;
   options->search.measure_all = true;
   options->search.hysteresis = 0;
-  options->search.sigma_textured = 0;
+  options->search.sigma_textured = -1;
 }
 
 }  // namespace

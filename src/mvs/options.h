@@ -146,7 +146,7 @@ void VisitTapaOptions(Options* options, const Visitor& visit) {
 
 // How much is tried before an estimate is kept, and how it is measured, where
 // COLMAP has no choice. What each is for stands in VisitSearchOptions. COLMAP's
-// own: true, any, true, 0 and 0.
+// own: true, any, true, 0 and -1.
 struct SearchOptions {
   bool try_all = false;
   double random_share = 0.5;
@@ -186,7 +186,9 @@ void VisitSearchOptions(Options* options, const Visitor& visit) {
                     "Spread of the window's weights over distance in pixels "
                     "where there is texture, so that the window is no larger "
                     "than what it needs to see; the less there is, the more it "
-                    "is sigma_spatial. 0: sigma_spatial everywhere"},
+                    "is sigma_spatial",
+                    OptionRange::AtLeast(0.5).OrMinusOne(
+                        "sigma_spatial everywhere")},
         &options->sigma_textured);
 }
 

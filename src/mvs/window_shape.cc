@@ -9,7 +9,11 @@ WindowShape::WindowShape(const Options& options)
       step(options.window_step),
       row_samples(2 * radius / step + 1),
       has_corners(step == 1 || row_samples < 4),
-      sigma_spatial(options.sigma_spatial > 0 ? options.sigma_spatial : radius),
+      // Sparse windows may have no sample in their centre: with a smaller
+      // spread none would weigh anything.
+      sigma_spatial(options.sigma_spatial > 0
+                        ? std::max(options.sigma_spatial, 0.5)
+                        : radius),
       sigma_textured(
           options.search.sigma_textured > 0
               ? std::min(options.search.sigma_textured, sigma_spatial)

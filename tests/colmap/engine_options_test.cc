@@ -158,7 +158,7 @@ TEST(PassOptions, ColmapDefaultsTakeTheirPlace) {
     EXPECT_TRUE(result.search.try_all);
     EXPECT_TRUE(result.search.measure_all);
     EXPECT_EQ(result.search.hysteresis, 0);
-    EXPECT_EQ(result.search.sigma_textured, 0);
+    EXPECT_EQ(result.search.sigma_textured, -1);
   }
 }
 

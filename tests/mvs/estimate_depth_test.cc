@@ -289,6 +289,8 @@ TEST(Options, CheckNamesTheOption) {
   expect_error([](Options* o) { o->window_step = 3; }, "window_step");
   expect_error([](Options* o) { o->sigma_color = 0; }, "sigma_color");
   expect_error([](Options* o) { o->num_samples = 0; }, "num_samples");
+  expect_error([](Options* o) { o->search.sigma_textured = 0.1; },
+               "sigma_textured");
   expect_error([](Options* o) { o->ncc_sigma = NAN; }, "ncc_sigma");
   expect_error([](Options* o) { o->num_iterations = 0; }, "num_iterations");
   expect_error([](Options* o) { o->num_threads = 0; }, "num_threads");
