@@ -127,6 +127,17 @@ TEST(Correlation, AgreesWithReferenceOnNoise) {
   ForEachInstructionSet([&] { CompareCosts(Options(), problem, true); });
 }
 
+TEST(Correlation, HasSamplesThatCountHoweverSmallTheSpread) {
+  const SyntheticPlane scene{SyntheticOptions()};
+  Options options;
+  options.sigma_spatial = 0.01;
+  const ProblemData data(options, scene.problem());
+  Patch patch(data.window);
+  PreparePatch(data, 20, 24, &patch);
+  EXPECT_TRUE(std::isfinite(patch.variance));
+  EXPECT_TRUE(std::isfinite(patch.mean));
+}
+
 TEST(Correlation, IsZeroAtTheTruthAndTwoWithoutTexture) {
   const SyntheticPlane scene{SyntheticOptions()};
   Problem problem = scene.problem();

@@ -23,21 +23,8 @@ struct PatchStatistics {
   float variance;
 };
 
-// A lane's place in the window: where its sample i lies.
-struct SampleOffset {
-  TAPA_INLINE SampleOffset(const WindowShape& window, int row_samples, int i) {
-    const int place = window.PlaceOfSample(i);
-    dx = place % row_samples * window.step - window.radius;
-    dy = place / row_samples * window.step - window.radius;
-    squared_distance = static_cast<float>(dx * dx + dy * dy);
-  }
-
-  int dx, dy;
-  float squared_distance;
-};
-
-// Reads the intensities of the patch around a pixel. Returns the share of
-// sigma_textured in its weights (WindowShape).
+// Reads the intensities of the patch around a pixel, with the weights of
+// sigma_textured. Returns the share of those in its weights (WindowShape).
 template <class Lanes, class Sizes, class Textures>
 TAPA_INLINE float LoadIntensities(const WindowShape& window,
                                   const Textures& textures, int row, int col,
@@ -48,14 +35,18 @@ TAPA_INLINE float LoadIntensities(const WindowShape& window,
   TAPA_UNROLL(1)
   for (int i = Lanes::First(); i < Sizes::NumSamples(window);
        i += Lanes::Step()) {
-    const SampleOffset at(window, Sizes::RowSamples(window), i);
-    const float intensity = textures.Reference(col + at.dx, row + at.dy);
-    samples[i].weighted_intensity = intensity;
+    const int place = window.PlaceOfSample(i);
+    const int row_samples = Sizes::RowSamples(window);
+    const int dx = place % row_samples * window.step - window.radius;
+    const int dy = place / row_samples * window.step - window.radius;
+    const float intensity = textures.Reference(col + dx, row + dy);
     // Less the centre's, so that small variances of bright patches are not lost
     // to rounding.
     const float difference = intensity - center;
-    const float weight =
-        ExpNegative(window.textured_scale * at.squared_distance);
+    const float weight = ExpNegative(window.textured_scale *
+                                     static_cast<float>(dx * dx + dy * dy));
+    samples[i] = {weight, intensity, static_cast<float>(dx),
+                  static_cast<float>(dy)};
     weight_sum += weight;
     sum += weight * difference;
     squared_sum += weight * difference * difference;
@@ -83,17 +74,15 @@ TAPA_INLINE PatchStatistics LoadPatch(const WindowShape& window,
       samples[i] = {0.0f, 0.0f, 0.0f, 0.0f};
       continue;
     }
-    const SampleOffset at(window, Sizes::RowSamples(window), i);
-    const float intensity = samples[i].weighted_intensity;
+    const PatchSample sample = samples[i];
+    const float intensity = sample.weighted_intensity;
     const float difference = intensity - center;
-    const float plain = ExpNegative(window.spatial_scale * at.squared_distance);
-    const float textured =
-        ExpNegative(window.textured_scale * at.squared_distance);
+    const float plain = ExpNegative(
+        window.spatial_scale * (sample.dx * sample.dx + sample.dy * sample.dy));
     const float weight =
-        (plain + texture * (textured - plain)) *
+        (plain + texture * (sample.weight - plain)) *
         ExpNegative(window.color_scale * difference * difference);
-    samples[i] = {weight, intensity, static_cast<float>(at.dx),
-                  static_cast<float>(at.dy)};
+    samples[i].weight = weight;
     weight_sum += weight;
     sum += weight * intensity;
   }
