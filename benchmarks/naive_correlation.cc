@@ -36,7 +36,8 @@ float NaiveCorrelationCost(const Window& window, const Patch& patch,
   float sum = 0;
   float squared_sum = 0;
   float product_sum = 0;
-  for (int i = 0; i < window.num_samples; ++i) {
+  const int num_samples = std::min(window.num_samples, patch.padded_samples);
+  for (int i = 0; i < num_samples; ++i) {
     const Vec3 p = warp.At(window.dx[i], window.dy[i]);
     const float value =
         (p.z > 0 ? Bilinear(source, p.x / p.z, p.y / p.z) : 0) - patch.mean;

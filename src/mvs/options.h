@@ -184,9 +184,9 @@ void VisitSearchOptions(Options* options, const Visitor& visit) {
         &options->hysteresis);
   visit(OptionEntry{"sigma_textured",
                     "Spread of the window's weights over distance in pixels "
-                    "where there is texture, so that the window is no larger "
-                    "than what it needs to see; the less there is, the more it "
-                    "is sigma_spatial",
+                    "where there is texture, which end at twice that, so that "
+                    "the window is no larger than what it needs to see; the "
+                    "less there is, the more it is sigma_spatial",
                     OptionRange::AtLeast(0.5).OrMinusOne(
                         "sigma_spatial everywhere")},
         &options->sigma_textured);

@@ -18,7 +18,10 @@ WindowShape::WindowShape(const Options& options)
           options.search.sigma_textured > 0
               ? std::min(options.search.sigma_textured, sigma_spatial)
               : sigma_spatial),
-      sigma_color(options.sigma_color) {
+      sigma_color(options.sigma_color),
+      near_radius(sigma_textured < sigma_spatial
+                      ? std::min(static_cast<int>(2 * sigma_textured), radius)
+                      : radius) {
   const double sigma_intensity = 255 * sigma_color;
   spatial_scale = static_cast<float>(-0.5 / (sigma_spatial * sigma_spatial));
   textured_scale = static_cast<float>(-0.5 / (sigma_textured * sigma_textured));

@@ -8,16 +8,16 @@ namespace tapa {
 
 // The correlation window and its weights: that of a sample for its distance
 // from the centre times that for its difference in intensity from it. The first
-// falls off with sigma_spatial where there is no texture and with
-// sigma_textured where there is much: the share of the latter is
+// falls off with sigma_spatial where there is no texture, and where there is
+// enough with sigma_textured, to end at twice that. The share of the latter is
 //
-//   Var / (Var + kTexture),
+//   min(1, Var / kTexture),
 //
-// with the variance of intensities, 0 to 1, in the window under the weights of
-// sigma_textured alone. That is the textureness of TAPA-MVS (textureness.h)
-// with a t_min of 0. A surface that shows little needs a large window, others
-// are told apart better by a small one (Kanade and Okutomi, "A Stereo Matching
-// Algorithm with an Adaptive Window", PAMI 1994).
+// with the variance of intensities, 0 to 1, under the weights of sigma_textured
+// alone. A surface that shows little needs a large window, others are told
+// apart better by a small one (Kanade and Okutomi, "A Stereo Matching Algorithm
+// with an Adaptive Window", PAMI 1994). Where the share is 1 the samples far
+// from the centre weigh nothing and are not looked at.
 struct WindowShape {
   WindowShape() = default;
   explicit WindowShape(const Options& options);
@@ -35,6 +35,9 @@ struct WindowShape {
   double sigma_spatial = 5;
   double sigma_textured = 5;
   double sigma_color = 0.2;
+  // How far samples are from the centre, in rows or columns, that count however
+  // much texture there is.
+  int near_radius = 5;
   // For kernels, factors in the exponent of the weight: of the squared distance
   // in pixels and of the squared difference in intensity (0 to 255).
   float spatial_scale = 0;
@@ -45,7 +48,13 @@ struct WindowShape {
   static TAPA_INLINE float Texture(float variance) {
     // A standard deviation of 5.7 grey levels: e / t_min of TapaOptions.
     constexpr float kTexture = 0.0005f * 255 * 255;
-    return variance / (variance + kTexture);
+    return variance < kTexture ? variance / kTexture : 1.0f;
+  }
+
+  // Of a sample's distance from the centre, in columns and rows.
+  TAPA_INLINE bool IsNear(int dx, int dy) const {
+    return dx <= near_radius && -dx <= near_radius && dy <= near_radius &&
+           -dy <= near_radius;
   }
 
   // Samples are numbered row by row, without the corners that are missing.

@@ -100,20 +100,40 @@ bool IsInWindow(const Options& options, int dy, int dx) {
            std::abs(dy) == r);
 }
 
+// Spreads of the weights where there is no texture and where there is much.
+double SigmaSpatial(const Options& options) {
+  return options.sigma_spatial > 0 ? options.sigma_spatial
+                                   : options.window_radius;
+}
+
+double SigmaTextured(const Options& options) {
+  const double sigma = options.search.sigma_textured;
+  return sigma > 0 ? std::min(sigma, SigmaSpatial(options))
+                   : SigmaSpatial(options);
+}
+
 // Weight of a sample for its distance, without regard to texture.
 double Gaussian(double sigma, int dy, int dx) {
   return std::exp(-(dx * dx + dy * dy) / (2 * sigma * sigma));
 }
 
-// Share of sigma_textured in the weights of a window.
+// The same where there is much texture: such windows end at two sigmas.
+double TexturedGaussian(const Options& options, int dy, int dx) {
+  const double sigma = SigmaTextured(options);
+  const bool is_cut = sigma < SigmaSpatial(options) &&
+                      std::max(std::abs(dx), std::abs(dy)) > 2 * sigma;
+  return is_cut ? 0 : Gaussian(sigma, dy, dx);
+}
+
+// Share of the latter in the weights of a window.
 double TexturedShare(const Options& options, const Map<uint8_t>& image, int row,
-                     int col, double sigma) {
+                     int col) {
   const int r = options.window_radius;
   double sum_w = 0, sum = 0, squared_sum = 0;
   for (int dy = -r; dy <= r; dy += options.window_step) {
     for (int dx = -r; dx <= r; dx += options.window_step) {
       if (IsInWindow(options, dy, dx)) {
-        const double w = Gaussian(sigma, dy, dx);
+        const double w = TexturedGaussian(options, dy, dx);
         const double value = Pixel(image, row + dy, col + dx);
         sum_w += w;
         sum += w * value;
@@ -123,7 +143,7 @@ double TexturedShare(const Options& options, const Map<uint8_t>& image, int row,
   }
   const double mean = sum / sum_w;
   const double variance = squared_sum / sum_w - mean * mean;
-  return variance / (variance + 0.0005);
+  return std::min(variance / 0.0005, 1.0);
 }
 
 WindowSums SumWindow(const Options& options, const Problem& problem, int row,
@@ -131,13 +151,7 @@ WindowSums SumWindow(const Options& options, const Problem& problem, int row,
   const Map<uint8_t>& ref = *problem.reference.image;
   const Matrix3d H = Homography(problem, row, col, plane, m);
   const int r = options.window_radius;
-  const double sigma_spatial =
-      options.sigma_spatial > 0 ? options.sigma_spatial : r;
-  const double sigma_textured =
-      options.search.sigma_textured > 0
-          ? std::min(options.search.sigma_textured, sigma_spatial)
-          : sigma_spatial;
-  const double share = TexturedShare(options, ref, row, col, sigma_textured);
+  const double share = TexturedShare(options, ref, row, col);
   double sum_w = 0, sum_r = 0, sum_s = 0, sum_rr = 0, sum_ss = 0, sum_rs = 0;
   for (int dy = -r; dy <= r; dy += options.window_step) {
     for (int dx = -r; dx <= r; dx += options.window_step) {
@@ -147,8 +161,8 @@ WindowSums SumWindow(const Options& options, const Problem& problem, int row,
       const double reference = Pixel(ref, row + dy, col + dx);
       const double difference = reference - Pixel(ref, row, col);
       const double w =
-          ((1 - share) * Gaussian(sigma_spatial, dy, dx) +
-           share * Gaussian(sigma_textured, dy, dx)) *
+          ((1 - share) * Gaussian(SigmaSpatial(options), dy, dx) +
+           share * TexturedGaussian(options, dy, dx)) *
           std::exp(-difference * difference /
                    (2 * options.sigma_color * options.sigma_color));
       const Vector3d p = H * Vector3d(col + dx + 0.5, row + dy + 0.5, 1);

@@ -29,27 +29,36 @@ using FloatTag = hn::CappedTag<float, 16>;
 using FloatVec = hn::Vec<FloatTag>;
 using IntTag = hn::RebindToSigned<FloatTag>;
 
-// Reads the intensities of the patch around a pixel. Returns the share of
-// sigma_textured in its weights (WindowShape).
-HWY_INLINE float LoadIntensities(const Window& window, const RefImage& image,
-                                 const uint8_t* pixel, Patch* patch) {
+// Reads the intensities of some samples of the patch around a pixel.
+HWY_INLINE void LoadIntensities(const RefImage& image, const uint8_t* pixel,
+                                int begin, int end, Patch* patch) {
   const FloatTag d;
   const IntTag di;
-  const int lanes = static_cast<int>(hn::Lanes(d));
   const auto byte = hn::Set(di, 255);
-  const FloatVec center = hn::Set(d, *pixel);
-  FloatVec weight_sum = hn::Zero(d);
-  FloatVec sum = hn::Zero(d);
-  FloatVec squared_sum = hn::Zero(d);
-  for (int i = 0; i < window.padded_samples; i += lanes) {
+  for (int i = begin; i < end; i += static_cast<int>(hn::Lanes(d))) {
     const auto intensity = hn::And(
         byte, hn::GatherOffset(di, reinterpret_cast<const int32_t*>(pixel),
                                hn::Load(di, image.offsets() + i)));
-    const FloatVec value = hn::ConvertTo(d, intensity);
-    hn::Store(value, d, patch->weighted_intensity.get() + i);
+    hn::Store(hn::ConvertTo(d, intensity), d,
+              patch->weighted_intensity.get() + i);
+  }
+}
+
+// The share of sigma_textured in the weights (WindowShape) of a patch whose
+// near samples have their intensities.
+HWY_INLINE float TexturedShare(const Window& window, float center_intensity,
+                               const Patch& patch) {
+  const FloatTag d;
+  const FloatVec center = hn::Set(d, center_intensity);
+  FloatVec weight_sum = hn::Zero(d);
+  FloatVec sum = hn::Zero(d);
+  FloatVec squared_sum = hn::Zero(d);
+  for (int i = 0; i < window.padded_near_samples;
+       i += static_cast<int>(hn::Lanes(d))) {
     // Less the centre's, so that small variances of bright patches are not lost
     // to rounding.
-    const FloatVec difference = hn::Sub(value, center);
+    const FloatVec difference =
+        hn::Sub(hn::Load(d, patch.weighted_intensity.get() + i), center);
     const FloatVec weight = hn::Load(d, window.textured_weight.get() + i);
     const FloatVec weighted = hn::Mul(weight, difference);
     weight_sum = hn::Add(weight_sum, weight);
@@ -71,12 +80,19 @@ HWY_INLINE void LoadPatch(const Window& window, const RefImage& image, int row,
   const int lanes = static_cast<int>(hn::Lanes(d));
 
   const uint8_t* pixel = image.At(row, col);
-  const FloatVec texture =
-      hn::Set(d, LoadIntensities(window, image, pixel, patch));
+  LoadIntensities(image, pixel, 0, window.padded_near_samples, patch);
+  const float share = TexturedShare(window, *pixel, *patch);
+  patch->padded_samples = window.padded_near_samples;
+  if (share < 1.0f) {
+    patch->padded_samples = window.padded_samples;
+    LoadIntensities(image, pixel, window.padded_near_samples,
+                    window.padded_samples, patch);
+  }
+  const FloatVec texture = hn::Set(d, share);
   const FloatVec center = hn::Set(d, *pixel);
   FloatVec weight_sum = hn::Zero(d);
   FloatVec sum = hn::Zero(d);
-  for (int i = 0; i < window.padded_samples; i += lanes) {
+  for (int i = 0; i < patch->padded_samples; i += lanes) {
     const FloatVec value = hn::Load(d, patch->weighted_intensity.get() + i);
     const auto difference = hn::ConvertTo(di, hn::Abs(hn::Sub(value, center)));
     const FloatVec plain = hn::Load(d, window.spatial_weight.get() + i);
@@ -94,7 +110,7 @@ HWY_INLINE void LoadPatch(const Window& window, const RefImage& image, int row,
   const FloatVec scale = hn::Set(d, inv_weight);
   const FloatVec mean = hn::Set(d, patch->mean);
   FloatVec variance = hn::Zero(d);
-  for (int i = 0; i < window.padded_samples; i += lanes) {
+  for (int i = 0; i < patch->padded_samples; i += lanes) {
     const FloatVec intensity = hn::Load(d, patch->weighted_intensity.get() + i);
     const FloatVec weight =
         hn::Mul(scale, hn::Load(d, patch->weight.get() + i));
@@ -169,7 +185,7 @@ HWY_INLINE Moments SumSamples(const Window& window, const Patch& patch,
   FloatVec sum = hn::Zero(d);
   FloatVec squared_sum = hn::Zero(d);
   FloatVec product_sum = hn::Zero(d);
-  for (int i = 0; i < window.padded_samples; i += lanes) {
+  for (int i = 0; i < patch.padded_samples; i += lanes) {
     const FloatVec dx = hn::Load(d, window.dx.get() + i);
     const FloatVec dy = hn::Load(d, window.dy.get() + i);
     const FloatVec x =

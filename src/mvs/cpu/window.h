@@ -9,14 +9,16 @@
 
 namespace tapa {
 
-// The samples of the correlation window, row by row, padded to whole SIMD
-// vectors with samples of weight 0.
+// The samples of the correlation window, the near ones first and both row by
+// row, padded to whole SIMD vectors with samples of weight 0.
 struct Window : WindowShape {
   explicit Window(const Options& options);
 
   // Samples in the window, and with padding.
   int num_samples;
   int padded_samples;
+  // So many from the first on hold all that are near, in whole SIMD vectors.
+  int padded_near_samples;
   // Offsets of the samples from the centre, in pixels.
   hwy::AlignedFreeUniquePtr<float[]> dx;
   hwy::AlignedFreeUniquePtr<float[]> dy;
@@ -36,6 +38,8 @@ struct Patch {
   // Weight of each sample, and weight times (intensity - mean).
   hwy::AlignedFreeUniquePtr<float[]> weight;
   hwy::AlignedFreeUniquePtr<float[]> weighted_intensity;
+  // How many of the window's samples these are: all that count.
+  int padded_samples;
   float mean;
   float variance;
 };

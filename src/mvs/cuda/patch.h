@@ -43,8 +43,11 @@ TAPA_INLINE float LoadIntensities(const WindowShape& window,
     // Less the centre's, so that small variances of bright patches are not lost
     // to rounding.
     const float difference = intensity - center;
-    const float weight = ExpNegative(window.textured_scale *
-                                     static_cast<float>(dx * dx + dy * dy));
+    const float weight =
+        window.IsNear(dx, dy)
+            ? ExpNegative(window.textured_scale *
+                          static_cast<float>(dx * dx + dy * dy))
+            : 0.0f;
     samples[i] = {weight, intensity, static_cast<float>(dx),
                   static_cast<float>(dy)};
     weight_sum += weight;
