@@ -46,6 +46,7 @@ struct TapaOptions {
   bool completion = true;
   bool completion_sightings = true;
   bool completion_triangles = true;
+  bool completion_silhouettes = true;
   double completion_agreement = 0.5;
   double completion_radius = 0.1;
   double completion_textureness = 0.5;
@@ -127,6 +128,10 @@ void VisitTapaOptions(Options* options, const Visitor& visit) {
   option("tapa_completion_triangles", &o.completion_triangles, completes,
          "Triangles between textured estimates complete and replace what lies "
          "between where more views speak for them");
+  option("tapa_completion_silhouettes", &o.completion_silhouettes, completes,
+         "Estimates beside texture give way to what pixels of their colour "
+         "around agree on, so that surfaces do not grow over those behind "
+         "them");
   option("tapa_completion_agreement", &o.completion_agreement, completes,
          "Share of the estimates nearby that have to lie on a plane",
          Range::From(0, 1));

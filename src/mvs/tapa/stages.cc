@@ -11,6 +11,7 @@
 #include "src/mvs/tapa/completion.h"
 #include "src/mvs/tapa/fill.h"
 #include "src/mvs/tapa/sightings.h"
+#include "src/mvs/tapa/silhouettes.h"
 #include "src/mvs/tapa/speckles.h"
 #include "src/mvs/tapa/textureness.h"
 #include "src/mvs/tapa/triangle_completion.h"
@@ -142,6 +143,12 @@ void TapaStages::Refine(Estimate* estimate) {
       options_.geom_consistency && !control_.IsStopped()) {
     CompleteWithTriangles(options_, problem_, control_, record_.textureness,
                           trusted, &depth, &estimate->normal, &record_.origin);
+  }
+  if (options_.tapa.completion && options_.tapa.completion_silhouettes &&
+      !control_.IsStopped()) {
+    MendSilhouettes(options_, problem_, camera_, ColorOf(problem_),
+                    record_.textureness, &depth, &estimate->normal,
+                    &record_.origin);
   }
   ClearOthers(estimate);
 }
