@@ -70,6 +70,8 @@ struct CorrelationWork {
 Options WindowOptions(const benchmark::State& state) {
   Options options;
   options.window_radius = static_cast<int>(state.range(0));
+  // All samples count, whatever the texture.
+  options.search.sigma_textured = -1;
   return options;
 }
 
@@ -201,6 +203,8 @@ void BM_Level(benchmark::State& state) {
     options.search.try_all = true;
     options.search.measure_all = true;
     options.search.hysteresis = 0;
+    options.search.sigma_textured = -1;
+    options.sigma_color = 0.2;
   }
   const View& reference = scene.problem().reference;
   const Problem truth = scene.GeometricProblem();

@@ -42,7 +42,8 @@ struct TapaOptions {
   // Part of refinement, beyond the paper (docs/tapa.md). Only estimates stay
   // that source views support, one view fewer than
   // Options::filter_min_num_consistent but at least one. Planes of superpixels,
-  // fitted to those that reach that number, replace the others.
+  // fitted to those that reach that number, replace the others; triangles
+  // between estimates and silhouettes have the last word.
   bool completion = true;
   bool completion_sightings = true;
   bool completion_triangles = true;
@@ -99,8 +100,10 @@ void VisitTapaOptions(Options* options, const Visitor& visit) {
   option("tapa_plane_distance", &o.plane_distance, planes,
          "Largest distance of a point from its superpixel's plane, in scene "
          "units; if <= 0, tapa_relative_plane_distance decides");
-  option("tapa_relative_plane_distance", &o.relative_plane_distance, planes,
-         "The same as a share of the superpixel's median depth",
+  option("tapa_relative_plane_distance", &o.relative_plane_distance,
+         planes || completes,
+         "The same as a share of the superpixel's median depth; completion "
+         "takes it for what lies on a triangle or an estimate, too",
          Range::Positive());
 
   option("tapa_speckle_size", &o.speckle_size, on,

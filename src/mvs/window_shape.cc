@@ -20,7 +20,8 @@ WindowShape::WindowShape(const Options& options)
               : sigma_spatial),
       sigma_color(options.sigma_color),
       near_radius(sigma_textured < sigma_spatial
-                      ? std::min(static_cast<int>(2 * sigma_textured), radius)
+                      ? static_cast<int>(std::min<double>(
+                            std::max(2 * sigma_textured, 3.0), radius))
                       : radius) {
   const double sigma_intensity = 255 * sigma_color;
   spatial_scale = static_cast<float>(-0.5 / (sigma_spatial * sigma_spatial));

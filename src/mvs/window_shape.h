@@ -9,15 +9,17 @@ namespace tapa {
 // The correlation window and its weights: that of a sample for its distance
 // from the centre times that for its difference in intensity from it. The first
 // falls off with sigma_spatial where there is no texture, and where there is
-// enough with sigma_textured, to end at twice that. The share of the latter is
+// enough with sigma_textured. The share of the latter is
 //
 //   min(1, Var / kTexture),
 //
 // with the variance of intensities, 0 to 1, under the weights of sigma_textured
 // alone. A surface that shows little needs a large window, others are told
 // apart better by a small one (Kanade and Okutomi, "A Stereo Matching Algorithm
-// with an Adaptive Window", PAMI 1994). Where the share is 1 the samples far
-// from the centre weigh nothing and are not looked at.
+// with an Adaptive Window", PAMI 1994). Where sigma_textured is the smaller of
+// the two, its weights end at twice that, but not within 3 pixels, so that
+// sparse windows keep 16 samples. Where the share is 1 the samples further away
+// weigh nothing, and the CPU does not look at them.
 struct WindowShape {
   WindowShape() = default;
   explicit WindowShape(const Options& options);

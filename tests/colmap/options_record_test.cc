@@ -87,8 +87,13 @@ TEST(OptionsOfMaps, LeavesOutWhatNothingReads) {
         "tapa_plane_distance", "tapa_fill_radius", "tapa_speckle_size"}) {
     EXPECT_EQ(values.count(name), 1) << name;
   }
-  options.tapa.texture_weighting = false;
   options.tapa.fine_superpixels = false;
+  options.tapa.coarse_superpixels = false;
+  values = OptionsOfMaps(options);
+  EXPECT_EQ(values.count("tapa_plane_distance"), 0);
+  EXPECT_EQ(values.count("tapa_relative_plane_distance"), 1);
+  options.tapa.coarse_superpixels = true;
+  options.tapa.texture_weighting = false;
   options.tapa.refinement = false;
   values = OptionsOfMaps(options);
   EXPECT_EQ(values.at("tapa_fine_superpixels"), "0");

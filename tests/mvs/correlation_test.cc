@@ -103,7 +103,7 @@ TEST(Correlation, AgreesWithReferenceForAllWindows) {
       options.window_step = step;
       options.sigma_color = 0.1 + 0.02 * radius;
       options.sigma_spatial = step == 1 ? -1 : 3;
-      for (const double sigma : {-1.0, 2.0}) {
+      for (const double sigma : {-1.0, 0.5, 2.0}) {
         options.search.sigma_textured = sigma;
         CompareCosts(options, scene.problem(), radius == 1 || sigma > 0);
       }

@@ -117,11 +117,13 @@ double Gaussian(double sigma, int dy, int dx) {
   return std::exp(-(dx * dx + dy * dy) / (2 * sigma * sigma));
 }
 
-// The same where there is much texture: such windows end at two sigmas.
+// The same where there is much texture: such windows end at two sigmas, but not
+// within three pixels.
 double TexturedGaussian(const Options& options, int dy, int dx) {
   const double sigma = SigmaTextured(options);
-  const bool is_cut = sigma < SigmaSpatial(options) &&
-                      std::max(std::abs(dx), std::abs(dy)) > 2 * sigma;
+  const bool is_cut =
+      sigma < SigmaSpatial(options) &&
+      std::max(std::abs(dx), std::abs(dy)) > std::max(2 * sigma, 3.0);
   return is_cut ? 0 : Gaussian(sigma, dy, dx);
 }
 

@@ -225,6 +225,34 @@ TEST(Tapa, ResultDoesNotDependOnThreads) {
   }
 }
 
+TEST(Tapa, MendsSilhouettesUnlessToldNotTo) {
+  const SyntheticPlane scene(WallScene(1));
+  const auto run = [&scene](bool completion, bool silhouettes,
+                            TapaRecord* record) {
+    Options options = TapaPass(false);
+    options.tapa.completion = completion;
+    options.tapa.completion_silhouettes = silhouettes;
+    Control control;
+    control.record = record;
+    return EstimateDepth(options, scene.problem(), control);
+  };
+  TapaRecord record;
+  const auto with = run(true, true, &record);
+  const auto without = run(true, false, nullptr);
+  ASSERT_TRUE(with && without);
+  int num_mended = 0;
+  for (size_t i = 0; i < with->depth.size(); ++i) {
+    if (with->depth.data()[i] != without->depth.data()[i]) {
+      ++num_mended;
+      EXPECT_EQ(record.origin.data()[i], kFromPlane);
+    }
+  }
+  EXPECT_GT(num_mended, 0);
+  EXPECT_LT(num_mended, static_cast<int>(with->depth.size()) / 10);
+  EXPECT_TRUE(
+      SameEstimate(*run(false, true, nullptr), *run(false, false, nullptr)));
+}
+
 TEST(Tapa, RecordsWhatItDid) {
   const SyntheticPlane scene(WallScene(1));
   for (const bool geometric : {false, true}) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -19,8 +20,9 @@ constexpr int kHeight = 50;
 constexpr float kFront = 2;
 constexpr float kBehind = 4;
 
-// Two surfaces that face the camera, with a silhouette in column 40 of texture
-// in which the front one's colour ends. Its estimates go on for four columns.
+// Two surfaces that face the camera, with a silhouette between columns 39 and
+// 40, in which the front one's colour ends. Its estimates go on for four
+// columns.
 struct Scene {
   Scene()
       : camera{0.01f, 0.01f, -0.45f, -0.25f},
@@ -41,8 +43,8 @@ struct Scene {
   }
 
   void Mend() {
-    MendSilhouettes(options, problem, camera, color, textureness, &depth,
-                    &normal, &origin);
+    MendSilhouettes(options, problem, Control(), camera, color, textureness,
+                    &depth, &normal, &origin);
   }
 
   Options options;
@@ -124,8 +126,11 @@ bool IsNearTexture(const Scene& scene, int row, int col) {
 std::vector<NaiveOpinion> NaiveOpinions(const Scene& scene, int row, int col) {
   std::vector<NaiveOpinion> opinions;
   const Vec3 ray = scene.camera.Ray(row, col);
-  for (int y = row - 15; y <= row + 15; y += 4) {
-    for (int x = col - 15; x <= col + 15; x += 4) {
+  const int step = std::max(1, (8 * scene.options.window_radius + 5) / 10);
+  for (int i = -7; i <= 7; i += 2) {
+    for (int j = -7; j <= 7; j += 2) {
+      const int y = row + i * step / 2;
+      const int x = col + j * step / 2;
       if (y < 0 || x < 0 || y >= kHeight || x >= kWidth ||
           IsNearTexture(scene, y, x) || !(scene.depth.At(y, x) > 0)) {
         continue;
@@ -178,7 +183,7 @@ DepthNormal NaiveMend(const Scene& scene, int row, int col) {
   return NaiveShare(opinions, median.depth) >= 0.5 ? median : own;
 }
 
-TEST(Silhouettes, AgreeWithNaiveReference) {
+Scene RandomScene() {
   std::mt19937 random(5);
   std::uniform_real_distribution<float> uniform(0, 1);
   Scene scene;
@@ -199,20 +204,69 @@ TEST(Silhouettes, AgreeWithNaiveReference) {
       scene.color.At(row, col).g += static_cast<uint8_t>(20 * uniform(random));
     }
   }
-  Scene mended = scene;
-  mended.Mend();
-  int num_mended = 0;
+  return scene;
+}
+
+TEST(Silhouettes, AgreeWithNaiveReference) {
+  for (const int radius : {1, 2, 5, 8}) {
+    SCOPED_TRACE(radius);
+    Scene scene = RandomScene();
+    scene.options.window_radius = radius;
+    Scene mended = scene;
+    mended.Mend();
+    int num_mended = 0;
+    for (int row = 0; row < kHeight; ++row) {
+      for (int col = 0; col < kWidth; ++col) {
+        const DepthNormal expected = NaiveMend(scene, row, col);
+        ASSERT_NEAR(mended.depth.At(row, col), expected.depth, 1e-4)
+            << row << " " << col;
+        ASSERT_EQ(mended.normal.At(row, col).x, expected.normal.x);
+        num_mended += expected.depth != scene.depth.At(row, col);
+      }
+    }
+    EXPECT_GT(num_mended, 20);
+    EXPECT_LT(num_mended, kWidth * kHeight / 2);
+  }
+}
+
+TEST(Silhouettes, AreTheSameInTheMirror) {
+  const Scene scene = RandomScene();
+  Scene mirrored = scene;
+  mirrored.camera.offset_x = -scene.camera.Ray(0, kWidth - 1).x;
   for (int row = 0; row < kHeight; ++row) {
     for (int col = 0; col < kWidth; ++col) {
-      const DepthNormal expected = NaiveMend(scene, row, col);
-      ASSERT_NEAR(mended.depth.At(row, col), expected.depth, 1e-4)
-          << row << " " << col;
-      ASSERT_EQ(mended.normal.At(row, col).x, expected.normal.x);
-      num_mended += expected.depth != scene.depth.At(row, col);
+      const int from = kWidth - 1 - col;
+      mirrored.color.At(row, col) = scene.color.At(row, from);
+      mirrored.textureness.At(row, col) = scene.textureness.At(row, from);
+      mirrored.depth.At(row, col) = scene.depth.At(row, from);
+      Vec3 normal = scene.normal.At(row, from);
+      normal.x = -normal.x;
+      mirrored.normal.At(row, col) = normal;
     }
   }
-  EXPECT_GT(num_mended, 50);
-  EXPECT_LT(num_mended, kWidth * kHeight / 2);
+  Scene mended = scene;
+  mended.Mend();
+  mirrored.Mend();
+  for (int row = 0; row < kHeight; ++row) {
+    for (int col = 0; col < kWidth; ++col) {
+      ASSERT_NEAR(mirrored.depth.At(row, kWidth - 1 - col),
+                  mended.depth.At(row, col), 1e-4)
+          << row << " " << col;
+    }
+  }
+}
+
+TEST(Silhouettes, SurviveNonsense) {
+  Scene scene;
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  scene.depth.At(25, 60) = nan;
+  scene.depth.At(25, 52) = std::numeric_limits<float>::infinity();
+  scene.normal.At(20, 56) = {nan, nan, nan};
+  scene.normal.At(20, 60) = Vec3();
+  scene.Mend();
+  for (int col = 40; col < 44; ++col) {
+    EXPECT_EQ(scene.depth.At(25, col), kBehind);
+  }
 }
 
 }  // namespace

@@ -15,22 +15,28 @@
 namespace tapa {
 namespace {
 
-// How far to ask, in radii of the window, and every how many pixels.
-constexpr int kReach = 3;
-constexpr int kStep = 4;
+// Above this a pixel has texture. Not an option, for with those of completion
+// at values at which they decide nothing this would end, too.
+constexpr float kTextured = 0.5f;
+// Share of the weight that decides.
+constexpr float kMinShare = 0.5f;
+// Rows and columns of those who are asked. An even number, so that half of them
+// are on either side.
+constexpr int kGridSize = 8;
+// Distance between them, in radii of the window: they reach nearly three.
+constexpr float kGridStep = 0.8f;
 // Differences in colour, the mean of the three channels' in grey levels, at
 // which a weight falls to 1 / e.
 constexpr float kColorSpread = 10;
-// Sum of the weights below which too few have the pixel's colour: with all of
-// the same one it is 64.
+// Sum of the weights up to which too few have the pixel's colour: if all of the
+// grid have it, it is 64.
 constexpr float kMinWeight = 4;
 
-// 1 within `radius` pixels of a textureness above this, 0 elsewhere.
-Map<uint8_t> FindNearTexture(const Map<float>& textureness,
-                             double min_textureness, int radius) {
+// 1 within `radius` pixels of texture, 0 elsewhere.
+Map<uint8_t> FindNearTexture(const Map<float>& textureness, int radius) {
   Map<uint8_t> textured(textureness.width(), textureness.height());
   for (size_t i = 0; i < textured.size(); ++i) {
-    textured.data()[i] = textureness.data()[i] > min_textureness;
+    textured.data()[i] = textureness.data()[i] > kTextured;
   }
   cv::Mat mat(textured.height(), textured.width(), CV_8U, textured.data());
   const int size = 2 * radius + 1;
@@ -59,29 +65,24 @@ struct Opinion {
   float weight;
 };
 
-// Share of the weight of those within the tolerance of this depth.
-float ShareNear(const std::vector<Opinion>& opinions, float depth,
-                float relative_tolerance) {
-  float near = 0;
-  float total = 0;
+// Weight of those within the tolerance of this depth.
+float WeightNear(const std::vector<Opinion>& opinions, float depth,
+                 float relative_tolerance) {
+  float weight = 0;
   for (const Opinion& opinion : opinions) {
-    total += opinion.weight;
     if (std::abs(opinion.plane.depth - depth) <= relative_tolerance * depth) {
-      near += opinion.weight;
+      weight += opinion.weight;
     }
   }
-  return total > kMinWeight ? near / total : 0;
+  return weight;
 }
 
-DepthNormal WeightedMedian(std::vector<Opinion>* opinions) {
+// total: sum of the weights.
+DepthNormal WeightedMedian(float total, std::vector<Opinion>* opinions) {
   std::sort(opinions->begin(), opinions->end(),
             [](const Opinion& a, const Opinion& b) {
               return a.plane.depth < b.plane.depth;
             });
-  float total = 0;
-  for (const Opinion& opinion : *opinions) {
-    total += opinion.weight;
-  }
   float below = 0;
   for (const Opinion& opinion : *opinions) {
     below += opinion.weight;
@@ -98,9 +99,9 @@ class SilhouetteMender {
                    const RefCamera& camera, const Map<Rgb>& color,
                    const Map<uint8_t>& near_texture, const Map<float>& depth,
                    const Map<Vec3>& normal)
-      : min_share_(static_cast<float>(options.tapa.completion_agreement)),
-        tolerance_(static_cast<float>(options.tapa.relative_plane_distance)),
-        reach_(kReach * options.window_radius),
+      : tolerance_(static_cast<float>(options.tapa.relative_plane_distance)),
+        step_(std::max(1, static_cast<int>(
+                              std::lround(kGridStep * options.window_radius)))),
         problem_(problem),
         camera_(camera),
         color_(color),
@@ -111,14 +112,18 @@ class SilhouetteMender {
 
   // What the estimate of a pixel near texture should be, if it is another one.
   std::optional<DepthNormal> Mend(int row, int col) {
-    const Vec3 ray = camera_.Ray(row, col);
-    Ask(row, col, ray);
-    if (opinions_.empty() ||
-        ShareNear(opinions_, depth_.At(row, col), tolerance_) >= min_share_) {
+    Ask(row, col, camera_.Ray(row, col));
+    float total = 0;
+    for (const Opinion& opinion : opinions_) {
+      total += opinion.weight;
+    }
+    const float enough = kMinShare * total;
+    if (!(total > kMinWeight) ||
+        WeightNear(opinions_, depth_.At(row, col), tolerance_) >= enough) {
       return std::nullopt;
     }
-    const DepthNormal median = WeightedMedian(&opinions_);
-    if (ShareNear(opinions_, median.depth, tolerance_) < min_share_) {
+    const DepthNormal median = WeightedMedian(total, &opinions_);
+    if (WeightNear(opinions_, median.depth, tolerance_) < enough) {
       return std::nullopt;
     }
     return median;
@@ -127,8 +132,10 @@ class SilhouetteMender {
  private:
   void Ask(int row, int col, const Vec3& ray) {
     opinions_.clear();
-    for (int y = row - reach_; y <= row + reach_; y += kStep) {
-      for (int x = col - reach_; x <= col + reach_; x += kStep) {
+    for (int i = 0; i < kGridSize; ++i) {
+      for (int j = 0; j < kGridSize; ++j) {
+        const int y = row + (2 * i - kGridSize + 1) * step_ / 2;
+        const int x = col + (2 * j - kGridSize + 1) * step_ / 2;
         if (y >= 0 && x >= 0 && y < depth_.height() && x < depth_.width() &&
             near_texture_.At(y, x) == 0 && IsDepth(depth_.At(y, x))) {
           AddOpinion(y, x, color_.At(row, col), ray);
@@ -148,9 +155,8 @@ class SilhouetteMender {
     }
   }
 
-  const float min_share_;
   const float tolerance_;
-  const int reach_;
+  const int step_;
   const Problem& problem_;
   const RefCamera& camera_;
   const Map<Rgb>& color_;
@@ -164,14 +170,15 @@ class SilhouetteMender {
 }  // namespace
 
 void MendSilhouettes(const Options& options, const Problem& problem,
-                     const RefCamera& camera, const Map<Rgb>& color,
-                     const Map<float>& textureness, Map<float>* depth,
-                     Map<Vec3>* normal, Map<uint8_t>* origin) {
-  const Map<uint8_t> near_texture = FindNearTexture(
-      textureness, options.tapa.completion_textureness, options.window_radius);
+                     const Control& control, const RefCamera& camera,
+                     const Map<Rgb>& color, const Map<float>& textureness,
+                     Map<float>* depth, Map<Vec3>* normal,
+                     Map<uint8_t>* origin) {
+  const Map<uint8_t> near_texture =
+      FindNearTexture(textureness, options.window_radius);
   SilhouetteMender mender(options, problem, camera, color, near_texture, *depth,
                           *normal);
-  for (int row = 0; row < depth->height(); ++row) {
+  for (int row = 0; row < depth->height() && !control.IsStopped(); ++row) {
     for (int col = 0; col < depth->width(); ++col) {
       if (near_texture.At(row, col) == 0 || !IsDepth(depth->At(row, col))) {
         continue;

@@ -26,17 +26,18 @@ namespace {
 constexpr uint64_t kFineStream = 0x66696E65;
 constexpr uint64_t kCoarseStream = 0x636F6172;
 
-Map<Rgb> ColorOf(const Problem& problem) {
+// The photograph in colour; `grey`: where it is kept if it has none.
+const Map<Rgb>& ColorOf(const Problem& problem, Map<Rgb>* grey) {
   if (problem.reference_color != nullptr) {
     return *problem.reference_color;
   }
-  const Map<uint8_t>& grey = *problem.reference.image;
-  Map<Rgb> color(grey.width(), grey.height());
-  for (size_t i = 0; i < grey.size(); ++i) {
-    const uint8_t value = grey.data()[i];
-    color.data()[i] = {value, value, value};
+  const Map<uint8_t>& image = *problem.reference.image;
+  *grey = Map<Rgb>(image.width(), image.height());
+  for (size_t i = 0; i < image.size(); ++i) {
+    const uint8_t value = image.data()[i];
+    grey->data()[i] = {value, value, value};
   }
-  return color;
+  return *grey;
 }
 
 int NumSuperpixels(int width, double divisor) {
@@ -54,7 +55,8 @@ TapaStages::TapaStages(const Options& options, const Problem& problem,
   const Map<uint8_t>& image = *problem.reference.image;
   record_.textureness = ComputeTextureness(image, TexturenessOf(options.tapa));
 
-  const Map<Rgb> color = ColorOf(problem);
+  Map<Rgb> grey;
+  const Map<Rgb>& color = ColorOf(problem, &grey);
   if (options.tapa.fine_superpixels) {
     record_.fine.superpixels = ComputeSuperpixels(
         color, NumSuperpixels(image.width(), options.tapa.fine_divisor));
@@ -146,9 +148,10 @@ void TapaStages::Refine(Estimate* estimate) {
   }
   if (options_.tapa.completion && options_.tapa.completion_silhouettes &&
       !control_.IsStopped()) {
-    MendSilhouettes(options_, problem_, camera_, ColorOf(problem_),
-                    record_.textureness, &depth, &estimate->normal,
-                    &record_.origin);
+    Map<Rgb> grey;
+    MendSilhouettes(options_, problem_, control_, camera_,
+                    ColorOf(problem_, &grey), record_.textureness, &depth,
+                    &estimate->normal, &record_.origin);
   }
   ClearOthers(estimate);
 }
