@@ -1,7 +1,7 @@
 // Speed of TAPA's stages at one megapixel next to naive references, in one run.
-// Superpixels, means over similar pixels, the drawing of planes and sightings
-// have none: the first two are OpenCV's, the third one table look-up for every
-// pixel, and the last asks every view about every pixel, as a reference would.
+// Superpixels, means over similar pixels, the drawing of planes, sightings and
+// silhouettes have none: the first two are OpenCV's, the third one table
+// look-up for every pixel, and the last two ask all that a reference would.
 
 #include <benchmark/benchmark.h>
 
@@ -13,6 +13,7 @@
 #include "src/mvs/sweep/random.h"
 #include "src/mvs/tapa/fill.h"
 #include "src/mvs/tapa/sightings.h"
+#include "src/mvs/tapa/silhouettes.h"
 #include "src/mvs/tapa/similar_mean.h"
 #include "src/mvs/tapa/speckles.h"
 #include "src/mvs/tapa/superpixel_planes.h"
@@ -270,6 +271,27 @@ void BM_SimilarMean(benchmark::State& state) {
   }
 }
 BENCHMARK(BM_SimilarMean)->Unit(benchmark::kMillisecond);
+
+// Texture in every 24th column, so that half of the pixels ask.
+void BM_Silhouettes(benchmark::State& state) {
+  const Work& work = Work::Get();
+  Map<float> textureness(kWidth, kHeight, 0.2f);
+  for (int row = 0; row < kHeight; ++row) {
+    for (int col = 0; col < kWidth; col += 24) {
+      textureness.At(row, col) = 0.9f;
+    }
+  }
+  for (auto _ : state) {
+    state.PauseTiming();
+    Map<float> depth = work.depth;
+    Map<Vec3> normal = work.normal;
+    Map<uint8_t> origin(kWidth, kHeight);
+    state.ResumeTiming();
+    MendSilhouettes(Options(), work.scene.problem(), Control(), work.camera,
+                    work.color, textureness, &depth, &normal, &origin);
+  }
+}
+BENCHMARK(BM_Silhouettes)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace tapa
