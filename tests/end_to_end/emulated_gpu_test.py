@@ -39,14 +39,19 @@ class EmulatedGpu(tiny.TestCase):
         result, gpu_folder = self.stereo("gpu", gpu("-1"))
         self.assert_success(result)
         self.assertIn("Computing on GPU 0 (Emulated GPU).", result.stdout)
+        right = [self.share_right(folder) for folder in (cpu_folder, gpu_folder)]
+        self.assertGreater(right[0], 0.4)
+        # Of three thousand pixels; rounding lets other draws win, as another seed does,
+        # which moves that of a single view by up to 0.2.
+        self.assertGreater(right[1], right[0] - 0.1)
+
+    def share_right(self, folder):
+        """Mean over the views of the share of pixels with a depth to 1 %."""
+        shares = []
         for index, name in enumerate(self.names):
-            right = []
-            for folder in cpu_folder, gpu_folder:
-                errors, count = tiny.depth_errors(folder, name, index)
-                right.append(sum(error < 0.01 for error in errors) / count)
-            self.assertGreater(right[0], 0.3)
-            # Of a thousand pixels; rounding lets other draws win, as another seed does.
-            self.assertGreater(right[1], right[0] - 0.1)
+            errors, count = tiny.depth_errors(folder, name, index)
+            shares.append(sum(error < 0.01 for error in errors) / count)
+        return sum(shares) / len(shares)
 
     def test_masked_pixels_have_nothing(self):
         for name in ("view%d.png" % i for i in range(3)):
