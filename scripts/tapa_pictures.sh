@@ -33,21 +33,11 @@ log=$work/stereo.log
 mkdir -p "$work"
 rm -rf "$work"/{workspace,pictures} "$log"
 "$root/scripts/make_workspace.sh" "$data" "$work/workspace" >/dev/null
-stereo() {
-  echo "Computing $1 ..."
-  shift
-  "$bin/colmap" patch_match_stereo --workspace_path "$work/workspace" \
-    --PatchMatchStereo.tapa 1 "$@" >>"$log" 2>&1 ||
-    fail "$(grep -m 1 '^ERROR' "$log" || echo "it failed"); all output is in $log"
-}
-# All maps that the geometric pass of one view may need, as the photometric pass
-# before it would make them; then that one.
-stereo "photometric maps" "$@" --PatchMatchStereo.geom_consistency 0 \
-  --PatchMatchStereo.filter 0 --PatchMatchStereo.tapa_refinement 0
-config=$work/workspace/stereo/patch-match.cfg
-grep -A 1 -Fx "$view" "$config" >"$config.tmp"
-mv "$config.tmp" "$config"
-stereo "$view" "$@" --PatchMatchStereo.tapa_debug "$work/pictures"
+echo "Computing the maps of all views ..."
+"$bin/colmap" patch_match_stereo --workspace_path "$work/workspace" \
+  --PatchMatchStereo.tapa 1 --PatchMatchStereo.tapa_debug "$work/pictures" \
+  "$@" >>"$log" 2>&1 ||
+  fail "it failed; all output is in $log"
 
 # Names must not depend on the content: the document links them. JPEG is smaller
 # for all but the picture of few colours in large areas.
