@@ -42,12 +42,13 @@ struct TapaOptions {
   // Part of refinement, beyond the paper (docs/tapa.md). Only estimates stay
   // that source views support, one view fewer than
   // Options::filter_min_num_consistent but at least one. Planes of superpixels,
-  // fitted to those that reach that number, replace the others; triangles
-  // between estimates and silhouettes have the last word.
+  // fitted to those that reach that number, replace the others; then triangles
+  // between estimates, silhouettes, and planes through what is around regions.
   bool completion = true;
   bool completion_sightings = true;
   bool completion_triangles = true;
   bool completion_silhouettes = true;
+  bool completion_regions = true;
   double completion_agreement = 0.5;
   double completion_radius = 0.1;
   double completion_textureness = 0.5;
@@ -135,6 +136,9 @@ void VisitTapaOptions(Options* options, const Visitor& visit) {
          "Estimates beside texture give way to what pixels of their colour "
          "around agree on, so that surfaces do not grow over those behind "
          "them");
+  option("tapa_completion_regions", &o.completion_regions, completes,
+         "Regions of one colour take the plane through the textured estimates "
+         "around them");
   option("tapa_completion_agreement", &o.completion_agreement, completes,
          "Share of the estimates nearby that have to lie on a plane",
          Range::From(0, 1));

@@ -359,5 +359,66 @@ TEST(FitPlane, KeyDecidesTheResult) {
   EXPECT_GT(num_different, 0);
 }
 
+TEST(FitPlaneToDepths, IsExactAndLeavesOutliersOut) {
+  std::mt19937 random(8);
+  std::vector<Vec3> points = PointsOnPlane(60, 0, &random);
+  AddOutliers(40, &random, &points);
+  const FittedPlane fit = FitPlaneToDepths(points, 0.01f, 8, 1);
+  EXPECT_EQ(NumInliers(fit, points), 60);
+  const double norm = std::sqrt(0.3 * 0.3 + 0.2 * 0.2 + 1);
+  ExpectPlane(fit.plane, {{0.3 / norm, -0.2 / norm, -1 / norm}, 4 / norm},
+              1e-4);
+  const FittedPlane again = FitPlaneToDepths(points, 0.01f, 8, 1);
+  EXPECT_EQ(std::memcmp(&fit.plane, &again.plane, sizeof(Plane)), 0);
+}
+
+TEST(FitPlaneToDepths, HasTheLeastErrorsOfDepth) {
+  std::mt19937 random(9);
+  const std::vector<Vec3> points = PointsOnPlane(200, 0.02f, &random);
+  const FittedPlane fit = FitPlaneToDepths(points, 0.05f, 8, 1);
+  ASSERT_EQ(NumInliers(fit, points), 200);
+  const auto sum_of_squares = [&points](const Plane& plane) {
+    double sum = 0;
+    for (const Vec3& point : points) {
+      const double error =
+          (Dot(plane.normal, point) + plane.distance) / plane.distance;
+      sum += error * error;
+    }
+    return sum;
+  };
+  const double least = sum_of_squares(fit.plane);
+  for (const float change : {-1e-3f, 1e-3f}) {
+    Plane other = fit.plane;
+    other.distance += change;
+    EXPECT_GT(sum_of_squares(other), least);
+    other = fit.plane;
+    other.normal.x += change;
+    EXPECT_GT(sum_of_squares(other), least);
+    other = fit.plane;
+    other.normal.y += change;
+    EXPECT_GT(sum_of_squares(other), least);
+  }
+}
+
+TEST(FitPlaneToDepths, ThereIsNoneWithoutThreeDirections) {
+  std::mt19937 random(10);
+  std::vector<Vec3> line;
+  std::vector<Vec3> edge_on;
+  for (int i = 0; i < 50; ++i) {
+    line.push_back({0.1f * i, 1, 3});
+    edge_on.push_back({0.1f * i, 0, 3.0f + i % 7});
+  }
+  EXPECT_EQ(FitPlaneToDepths(line, 0.01f, 8, 1).inlier_ratio, 0);
+  EXPECT_EQ(FitPlaneToDepths(edge_on, 0.01f, 8, 1).inlier_ratio, 0);
+  EXPECT_EQ(FitPlaneToDepths({}, 0.01f, 8, 1).inlier_ratio, 0);
+  EXPECT_EQ(
+      FitPlaneToDepths(PointsOnPlane(7, 0, &random), 0.01f, 8, 1).inlier_ratio,
+      0);
+  EXPECT_EQ(
+      FitPlaneToDepths(std::vector<Vec3>(20, {kNan, kInf, kNan}), 0.01f, 8, 1)
+          .inlier_ratio,
+      0);
+}
+
 }  // namespace
 }  // namespace tapa

@@ -128,7 +128,94 @@ Fit RunRansac(const std::vector<Vec3>& points, double max_distance,
   return best;
 }
 
+// Points X with m.dot(X) = 1, of which m.dot(X) - 1 is the relative error of
+// the depth.
+struct DepthFit {
+  Vector3d m = Vector3d::Zero();
+  bool valid = false;
+};
+
+bool IsInlier(const DepthFit& fit, const Vec3& point, double max_error) {
+  return std::abs(fit.m.dot(ToEigen(point)) - 1) <= max_error;
+}
+
+int CountInliers(const DepthFit& fit, const std::vector<Vec3>& points,
+                 double max_error) {
+  return static_cast<int>(std::count_if(
+      points.begin(), points.end(),
+      [&](const Vec3& point) { return IsInlier(fit, point, max_error); }));
+}
+
+// Least squares over the points that `take` says.
+template <typename Take>
+DepthFit FitDepths(const std::vector<Vec3>& points, const Take& take) {
+  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+  Vector3d sum = Vector3d::Zero();
+  for (const Vec3& point : points) {
+    if (take(point)) {
+      const Vector3d x = ToEigen(point);
+      squares += x * x.transpose();
+      sum += x;
+    }
+  }
+  // Points on a line, or in a plane with the camera's centre, have two
+  // directions at most.
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(squares);
+  const Vector3d values = solver.eigenvalues();
+  DepthFit fit;
+  fit.valid = values(0) > 1e-7 * values(2);
+  if (fit.valid) {
+    fit.m = solver.eigenvectors() *
+            (solver.eigenvectors().transpose() * sum).cwiseQuotient(values);
+    fit.valid = fit.m.norm() > 0;
+  }
+  return fit;
+}
+
 }  // namespace
+
+FittedPlane FitPlaneToDepths(const std::vector<Vec3>& points, float max_error,
+                             int min_num_inliers, uint64_t key) {
+  FittedPlane result;
+  min_num_inliers = std::max(min_num_inliers, 3);
+  const size_t size = points.size();
+  if (size < static_cast<size_t>(min_num_inliers)) {
+    return result;
+  }
+  DepthFit best;
+  int best_count = 0;
+  int num_trials = kMaxNumTrials;
+  for (int trial = 0; trial < num_trials; ++trial) {
+    const Random random(key, trial, 0);
+    std::vector<Vec3> drawn;
+    for (int i = 0; i < 3; ++i) {
+      drawn.push_back(points[std::min(
+          static_cast<size_t>(random.Uniform(i) * size), size - 1)]);
+    }
+    const DepthFit fit = FitDepths(drawn, [](const Vec3&) { return true; });
+    const int count = fit.valid ? CountInliers(fit, points, max_error) : 0;
+    if (count > best_count) {
+      best = fit;
+      best_count = count;
+      num_trials = NumTrials(static_cast<double>(count) / size);
+    }
+  }
+  for (int i = 0; i < kNumRefits && best.valid; ++i) {
+    best = FitDepths(points, [&, other = best](const Vec3& point) {
+      return IsInlier(other, point, max_error);
+    });
+  }
+  best_count = best.valid ? CountInliers(best, points, max_error) : 0;
+  if (best_count < min_num_inliers) {
+    return result;
+  }
+  const double norm = best.m.norm();
+  const Eigen::Vector3f normal = (-best.m / norm).cast<float>();
+  result.plane.normal = {normal(0), normal(1), normal(2)};
+  result.plane.distance = static_cast<float>(1 / norm);
+  result.inlier_ratio = static_cast<float>(best_count) / size;
+  return result;
+}
 
 FittedPlane FitPlane(const std::vector<Vec3>& points, float max_distance,
                      int min_num_inliers, uint64_t key) {

@@ -10,6 +10,7 @@
 #include "src/mvs/sweep/hypotheses.h"
 #include "src/mvs/tapa/completion.h"
 #include "src/mvs/tapa/fill.h"
+#include "src/mvs/tapa/region_planes.h"
 #include "src/mvs/tapa/sightings.h"
 #include "src/mvs/tapa/silhouettes.h"
 #include "src/mvs/tapa/speckles.h"
@@ -150,6 +151,13 @@ void TapaStages::Refine(Estimate* estimate) {
       !control_.IsStopped()) {
     Map<Rgb> grey;
     MendSilhouettes(options_, problem_, control_, camera_,
+                    ColorOf(problem_, &grey), record_.textureness, &depth,
+                    &estimate->normal, &record_.origin);
+  }
+  if (options_.tapa.completion && options_.tapa.completion_regions &&
+      !control_.IsStopped()) {
+    Map<Rgb> grey;
+    CompleteRegions(options_, problem_, control_, camera_,
                     ColorOf(problem_, &grey), record_.textureness, &depth,
                     &estimate->normal, &record_.origin);
   }

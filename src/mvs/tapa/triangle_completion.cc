@@ -13,9 +13,6 @@
 namespace tapa {
 namespace {
 
-// Of what triangles have as corners: deviations of eight grey levels with the
-// default options, which edges have and shading has not.
-constexpr double kClearTexture = 0.7;
 // More for a triangle than for the estimate: those of its own corners, which
 // lie on it, whatever it is.
 constexpr float kMinNumVotes = 3;

@@ -84,15 +84,17 @@ std::vector<std::array<int, 3>> Delaunay(int width, int height,
 
 }  // namespace
 
+int AnchorSpacing(int width, int height) {
+  return std::max(4, (std::max(width, height) + kNumSquares - 1) / kNumSquares);
+}
+
 std::vector<Anchor> FindAnchors(const TapaOptions& options,
                                 const Map<float>& depth,
                                 const Map<float>& textureness,
                                 double min_textureness) {
   const int height = depth.height() - 1;
   const int width = depth.width() - 1;
-  const int size =
-      std::max(4, (std::max(depth.width(), depth.height()) + kNumSquares - 1) /
-                      kNumSquares);
+  const int size = AnchorSpacing(depth.width(), depth.height());
   // Half of what a plane may be off by.
   const float step = static_cast<float>(0.5 * options.relative_plane_distance);
   std::vector<Anchor> anchors;

@@ -43,7 +43,15 @@ struct Anchor {
   int col;
 };
 
-// At most one in each square of 1/80 of the image's longest side: of the pixels
+// Textureness of anchors: deviations of eight grey levels with the default
+// options, which edges have and shading has not.
+constexpr double kClearTexture = 0.7;
+
+// Side of the squares that have one anchor each, in pixels: 1/80 of the image's
+// longest side, at least 4.
+int AnchorSpacing(int width, int height);
+
+// At most one in each square: of the pixels
 // of at least a textureness whose depth most pixels beside them share, the one
 // with most texture. Depth 0: there is no estimate.
 std::vector<Anchor> FindAnchors(const TapaOptions& options,

@@ -1,0 +1,251 @@
+#include "src/mvs/tapa/region_planes.h"
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <vector>
+
+#include "src/base/depth.h"
+#include "src/mvs/sweep/plane.h"
+#include "src/mvs/tapa/completion.h"
+#include "src/mvs/tapa/even_regions.h"
+#include "src/mvs/tapa/plane_fit.h"
+#include "src/mvs/tapa/triangle_planes.h"
+
+namespace tapa {
+namespace {
+
+// Where regions end, in grey levels.
+constexpr float kSteps[] = {6, 3};
+// Above this a pixel has texture, and an estimate of its own.
+constexpr float kTextured = 0.5f;
+// Of the anchors of a region's plane.
+constexpr int kMinNumAnchors = 8;
+constexpr float kMinShare = 0.35f;
+// Share of a region's pixels that lie on its other plane.
+constexpr float kMinOtherShare = 0.1f;
+// Times relative_plane_distance: pixels this near to a plane lie on it.
+constexpr float kTolerance = 2;
+
+// In the frame of the camera.
+using RegionAnchors = std::vector<Vec3>;
+
+// The anchors in and around each region; those between two are of both.
+std::vector<RegionAnchors> GatherAnchors(const RefCamera& camera,
+                                         const Map<float>& depth,
+                                         const std::vector<Anchor>& anchors,
+                                         const EvenRegions& regions) {
+  const Map<int32_t>& labels = regions.labels;
+  const int reach = AnchorSpacing(labels.width(), labels.height());
+  std::vector<RegionAnchors> result(regions.count + 1);
+  for (const Anchor& anchor : anchors) {
+    std::set<int32_t> found;
+    int32_t last = EvenRegions::kNone;
+    for (int row = std::max(anchor.row - reach, 0);
+         row <= std::min(anchor.row + reach, labels.height() - 1); ++row) {
+      for (int col = std::max(anchor.col - reach, 0);
+           col <= std::min(anchor.col + reach, labels.width() - 1); ++col) {
+        const int32_t label = labels.At(row, col);
+        if (label != EvenRegions::kNone && label != last &&
+            std::hypot(row - anchor.row, col - anchor.col) <= reach) {
+          found.insert(label);
+          last = label;
+        }
+      }
+    }
+    for (const int32_t label : found) {
+      result[label].push_back(depth.At(anchor.row, anchor.col) *
+                              camera.Ray(anchor.row, anchor.col));
+    }
+  }
+  return result;
+}
+
+// A plane, and where it is known.
+struct AnchoredPlane {
+  // Distance 0: there is none.
+  Plane plane;
+  // Inverse of the sum of X X^T over the anchors X on the plane.
+  Eigen::Matrix3f covariance = Eigen::Matrix3f::Zero();
+
+  // Whether the depth of a point on the plane is known as well as that of an
+  // anchor: by linear least squares its variance is X^T covariance X times that
+  // of the relative error of an anchor's depth.
+  bool IsKnownAt(const Vec3& point) const {
+    const Eigen::Vector3f x(point.x, point.y, point.z);
+    return x.dot(covariance * x) <= 1;
+  }
+};
+
+// The plane through most anchors, and the anchors that do not lie on it.
+struct Split {
+  AnchoredPlane plane;
+  float share = 0;
+  RegionAnchors others;
+};
+
+Split SplitByPlane(const RegionAnchors& anchors, double max_error,
+                   uint64_t seed) {
+  const FittedPlane fitted = FitPlaneToDepths(
+      anchors, static_cast<float>(max_error), kMinNumAnchors, seed);
+  Split split;
+  if (fitted.inlier_ratio == 0) {
+    return split;
+  }
+  split.plane.plane = fitted.plane;
+  split.share = fitted.inlier_ratio;
+  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+  for (const Vec3& anchor : anchors) {
+    const float offset =
+        Dot(fitted.plane.normal, anchor) + fitted.plane.distance;
+    if (std::abs(offset) <= max_error * fitted.plane.distance) {
+      const Eigen::Vector3d x(anchor.x, anchor.y, anchor.z);
+      squares += x * x.transpose();
+    } else {
+      split.others.push_back(anchor);
+    }
+  }
+  split.plane.covariance = squares.inverse().cast<float>();
+  return split;
+}
+
+// The plane of a region, and the one through most of the anchors that it
+// misses.
+struct RegionPlanes {
+  AnchoredPlane own;
+  AnchoredPlane other;
+  int num_pixels = 0;
+  int num_on_other = 0;
+};
+
+RegionPlanes FindPlanes(const RegionAnchors& anchors, double max_error,
+                        uint64_t seed) {
+  RegionPlanes planes;
+  const Split split = SplitByPlane(anchors, max_error, seed);
+  if (split.share >= kMinShare) {
+    planes.own = split.plane;
+    planes.other = SplitByPlane(split.others, max_error, seed).plane;
+  }
+  return planes;
+}
+
+class RegionCompleter {
+ public:
+  RegionCompleter(const Options& options, const Problem& problem,
+                  const RefCamera& camera, const Map<float>& textureness,
+                  const EvenRegions& regions, Map<float>* depth,
+                  Map<Vec3>* normal, Map<uint8_t>* origin)
+      : options_(options),
+        problem_(problem),
+        camera_(camera),
+        textureness_(textureness),
+        labels_(regions.labels),
+        tolerance_(kTolerance *
+                   static_cast<float>(options.tapa.relative_plane_distance)),
+        depth_(*depth),
+        normal_(*normal),
+        origin_(*origin),
+        planes_(regions.count + 1) {}
+
+  void Fit(const std::vector<RegionAnchors>& anchors) {
+    for (size_t label = 1; label < planes_.size(); ++label) {
+      planes_[label] =
+          FindPlanes(anchors[label], options_.tapa.relative_plane_distance,
+                     options_.seed + label);
+    }
+  }
+
+  // Which decide whether a region's other plane is one.
+  void CountPixels() {
+    ForEachPixel([this](int row, int col, RegionPlanes* planes) {
+      ++planes->num_pixels;
+      planes->num_on_other += LiesOn(planes->other.plane, row, col) ? 1 : 0;
+    });
+  }
+
+  void Complete() {
+    ForEachPixel([this](int row, int col, RegionPlanes* planes) {
+      const size_t pixel = static_cast<size_t>(row) * labels_.width() + col;
+      const Vec3 ray = camera_.Ray(row, col);
+      const DepthNormal on_plane = PlaneHypothesis(
+          planes->own.plane, ray, problem_.depth_min, problem_.depth_max);
+      if (textureness_.At(row, col) >= kTextured || problem_.IsMasked(pixel) ||
+          on_plane.depth == 0 || !planes->own.IsKnownAt(on_plane.depth * ray) ||
+          LiesOn(planes->own.plane, row, col) || Stays(*planes, row, col)) {
+        return;
+      }
+      depth_.At(row, col) = on_plane.depth;
+      normal_.At(row, col) = on_plane.normal;
+      origin_.At(row, col) = kFromPlane;
+    });
+  }
+
+ private:
+  // Calls visit(row, col, planes) for the pixels of regions that have a plane.
+  template <typename Visitor>
+  void ForEachPixel(const Visitor& visit) {
+    for (int row = 0; row < labels_.height(); ++row) {
+      for (int col = 0; col < labels_.width(); ++col) {
+        RegionPlanes& planes = planes_[labels_.At(row, col)];
+        if (planes.own.plane.distance > 0) {
+          visit(row, col, &planes);
+        }
+      }
+    }
+  }
+
+  bool LiesOn(const Plane& plane, int row, int col) const {
+    const float depth = depth_.At(row, col);
+    if (plane.distance == 0) {
+      return false;
+    }
+    const float on_plane = PlaneAt(plane, camera_.Ray(row, col)).depth;
+    return IsDepth(depth) &&
+           std::abs(depth - on_plane) <= tolerance_ * on_plane;
+  }
+
+  bool Stays(const RegionPlanes& planes, int row, int col) const {
+    return planes.num_on_other >= kMinOtherShare * planes.num_pixels &&
+           LiesOn(planes.other.plane, row, col) &&
+           planes.other.IsKnownAt(depth_.At(row, col) * camera_.Ray(row, col));
+  }
+
+  const Options& options_;
+  const Problem& problem_;
+  const RefCamera& camera_;
+  const Map<float>& textureness_;
+  const Map<int32_t>& labels_;
+  const float tolerance_;
+  Map<float>& depth_;
+  Map<Vec3>& normal_;
+  Map<uint8_t>& origin_;
+  // By label.
+  std::vector<RegionPlanes> planes_;
+};
+
+}  // namespace
+
+void CompleteRegions(const Options& options, const Problem& problem,
+                     const Control& control, const RefCamera& camera,
+                     const Map<Rgb>& color, const Map<float>& textureness,
+                     Map<float>* depth, Map<Vec3>* normal,
+                     Map<uint8_t>* origin) {
+  const std::vector<Anchor> anchors =
+      FindAnchors(options.tapa, *depth, textureness, kClearTexture);
+  const Map<float> steps = MeasureSteps(color);
+  for (const float max_step : kSteps) {
+    if (control.IsStopped()) {
+      return;
+    }
+    const EvenRegions regions = FindEvenRegions(steps, textureness, max_step);
+    RegionCompleter completer(options, problem, camera, textureness, regions,
+                              depth, normal, origin);
+    completer.Fit(GatherAnchors(camera, *depth, anchors, regions));
+    completer.CountPixels();
+    completer.Complete();
+  }
+}
+
+}  // namespace tapa
