@@ -13,6 +13,7 @@
 #include "src/mvs/sweep/random.h"
 #include "src/mvs/tapa/fill.h"
 #include "src/mvs/tapa/sightings.h"
+#include "src/mvs/tapa/region_planes.h"
 #include "src/mvs/tapa/silhouettes.h"
 #include "src/mvs/tapa/similar_mean.h"
 #include "src/mvs/tapa/speckles.h"
@@ -292,6 +293,30 @@ void BM_Silhouettes(benchmark::State& state) {
   }
 }
 BENCHMARK(BM_Silhouettes)->Unit(benchmark::kMillisecond);
+
+// Tiles of one colour in frames with texture.
+void BM_Regions(benchmark::State& state) {
+  const Work& work = Work::Get();
+  const Map<Rgb> color(kWidth, kHeight, {120, 120, 120});
+  Map<float> textureness(kWidth, kHeight, 0.2f);
+  for (int row = 0; row < kHeight; ++row) {
+    for (int col = 0; col < kWidth; ++col) {
+      if (row % 120 < 6 || col % 120 < 6) {
+        textureness.At(row, col) = 0.9f;
+      }
+    }
+  }
+  for (auto _ : state) {
+    state.PauseTiming();
+    Map<float> depth = work.depth;
+    Map<Vec3> normal = work.normal;
+    Map<uint8_t> origin(kWidth, kHeight);
+    state.ResumeTiming();
+    CompleteRegions(Options(), work.scene.problem(), Control(), work.camera,
+                    color, textureness, &depth, &normal, &origin);
+  }
+}
+BENCHMARK(BM_Regions)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace tapa

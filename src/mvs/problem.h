@@ -21,8 +21,8 @@ struct Problem {
   float depth_min = 0;
   float depth_max = 0;
   // The reference photograph in colour, of the same size as its grey image,
-  // for TAPA's superpixels and silhouettes; not there: they see the grey image.
-  // Borrowed.
+  // for TAPA's superpixels, silhouettes and regions; not there: they see the
+  // grey image. Borrowed.
   const Map<Rgb>* reference_color = nullptr;
   // Where the estimation starts: depth in scene units and unit normals in the
   // reference camera's frame, both of the reference image's size. Pixels

@@ -161,20 +161,80 @@ TEST(Regions, EndWhereTheColourDoes) {
   });
 }
 
-TEST(Regions, LeaveMasksAndRangesAlone) {
+// A pillar of another plane, whose colour ends at a step between the two
+// heights at which regions do: first it is part of the surface around it.
+TEST(Regions, EndAtLowStepsInTheEnd) {
+  Scene scene;
+  const Plane pillar = Tilted(0.2f, -0.3f, 3);
+  scene.ForEach([&](int row, int col) {
+    if (std::abs(col - 80) < 20) {
+      scene.color.At(row, col) = {116, 126, 136};
+      scene.depth.At(row, col) =
+          scene.On(pillar, row, col) *
+          (scene.textureness.At(row, col) > 0.5f ? 1 : 1.2f);
+    }
+  });
+  scene.Complete();
+  EXPECT_NEAR(scene.depth.At(50, 80) / scene.On(pillar, 50, 80), 1, 1e-3);
+  EXPECT_NEAR(scene.depth.At(50, 30) / scene.On(scene.plane, 50, 30), 1, 1e-3);
+  EXPECT_NEAR(scene.depth.At(50, 130) / scene.On(scene.plane, 50, 130), 1,
+              1e-3);
+}
+
+// Neither do they count among a region's pixels, nor do they connect regions.
+TEST(Regions, EndAtMasks) {
+  Scene scene;
+  const Plane right = Tilted(-0.6f, 0, 2);
+  scene.problem.mask = Map<uint8_t>(kWidth, kHeight);
+  scene.ForEach([&](int row, int col) {
+    if (std::abs(col - 80) < 10) {
+      scene.problem.mask.At(row, col) = 1;
+      scene.depth.At(row, col) = 0;
+    } else if (col > 80) {
+      scene.depth.At(row, col) =
+          scene.On(right, row, col) *
+          (scene.textureness.At(row, col) > 0.5f ? 1 : 1.3f);
+    }
+  });
+  scene.Complete();
+  EXPECT_NEAR(scene.depth.At(50, 30) / scene.On(scene.plane, 50, 30), 1, 1e-3);
+  EXPECT_EQ(scene.depth.At(50, 80), 0);
+  EXPECT_NEAR(scene.depth.At(50, 130) / scene.On(right, 50, 130), 1, 1e-3);
+}
+
+TEST(Regions, LeaveMaskedPixelsAlone) {
   Scene scene;
   scene.problem.mask = Map<uint8_t>(kWidth, kHeight);
   scene.problem.mask.At(50, 80) = 1;
   const float masked = scene.depth.At(50, 80);
-  // What is nearer than this is none.
-  const float middle = scene.On(scene.plane, kHeight / 2, kWidth / 2);
-  scene.problem.depth_min = middle;
-  const Map<float> before = scene.depth;
   scene.Complete();
   EXPECT_EQ(scene.depth.At(50, 80), masked);
-  scene.ForEach([&](int row, int col) {
-    if (scene.On(scene.plane, row, col) < 0.99f * middle) {
-      ASSERT_EQ(scene.depth.At(row, col), before.At(row, col));
+  EXPECT_NE(scene.depth.At(50, 81), masked);
+}
+
+// The range of depths is the sparse points', which a wall near the camera has
+// none of; but a plane ends where it is not known, long before its horizon.
+TEST(Regions, MayLeaveTheRangeOfDepths) {
+  Scene scene;
+  scene.problem.depth_min = scene.problem.depth_max = 4;
+  scene.Complete();
+  EXPECT_NEAR(scene.depth.At(50, 80) / scene.On(scene.plane, 50, 80), 1, 1e-3);
+
+  Scene floor;
+  floor.plane = Tilted(0, 4, 4);
+  floor.ForEach([&floor](int row, int col) {
+    const bool is_seen = row >= 60;
+    const bool has_texture =
+        is_seen && (col < kFrame || col >= kWidth - kFrame ||
+                    row >= kHeight - kFrame || row < 66);
+    floor.textureness.At(row, col) = has_texture ? 0.9f : 0.2f;
+    floor.depth.At(row, col) = is_seen ? floor.On(floor.plane, row, col) : 0.0f;
+  });
+  floor.Complete();
+  floor.ForEach([&floor](int row, int col) {
+    ASSERT_GE(floor.depth.At(row, col), 0);
+    if (row < 20) {
+      ASSERT_EQ(floor.depth.At(row, col), 0) << row << " " << col;
     }
   });
 }

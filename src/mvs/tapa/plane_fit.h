@@ -30,7 +30,8 @@ FittedPlane FitPlane(const std::vector<Vec3>& points, float max_distance,
 // The same with errors of depth: the inliers are the points whose depth is off
 // by at most the share max_error of the plane's, as seen from the camera, and
 // the sum of the squares of these errors is least. For points that are far
-// apart, each as exact as its depth allows. max_distance of the result is 0.
+// apart, each as exact as its depth allows. max_distance of the result is 0,
+// and planes seen edge-on are some, too.
 FittedPlane FitPlaneToDepths(const std::vector<Vec3>& points, float max_error,
                              int min_num_inliers, uint64_t key);
 

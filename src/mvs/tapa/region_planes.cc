@@ -68,14 +68,16 @@ struct AnchoredPlane {
   // Distance 0: there is none.
   Plane plane;
   // Inverse of the sum of X X^T over the anchors X on the plane.
-  Eigen::Matrix3f covariance = Eigen::Matrix3f::Zero();
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
 
   // Whether the depth of a point on the plane is known as well as that of an
   // anchor: by linear least squares its variance is X^T covariance X times that
   // of the relative error of an anchor's depth.
   bool IsKnownAt(const Vec3& point) const {
-    const Eigen::Vector3f x(point.x, point.y, point.z);
-    return x.dot(covariance * x) <= 1;
+    const Eigen::Vector3d x(point.x, point.y, point.z);
+    const double variance = x.dot(covariance * x);
+    // Below 0 by rounding where anchors are nearly along a line.
+    return variance >= 0 && variance <= 1;
   }
 };
 
@@ -107,7 +109,7 @@ Split SplitByPlane(const RegionAnchors& anchors, double max_error,
       split.others.push_back(anchor);
     }
   }
-  split.plane.covariance = squares.inverse().cast<float>();
+  split.plane.covariance = squares.inverse();
   return split;
 }
 
@@ -133,15 +135,18 @@ RegionPlanes FindPlanes(const RegionAnchors& anchors, double max_error,
 
 class RegionCompleter {
  public:
+  // before: depths of which other planes are made; what a step has completed is
+  // no evidence for the next one.
   RegionCompleter(const Options& options, const Problem& problem,
                   const RefCamera& camera, const Map<float>& textureness,
-                  const EvenRegions& regions, Map<float>* depth,
-                  Map<Vec3>* normal, Map<uint8_t>* origin)
+                  const EvenRegions& regions, const Map<float>& before,
+                  Map<float>* depth, Map<Vec3>* normal, Map<uint8_t>* origin)
       : options_(options),
         problem_(problem),
         camera_(camera),
         textureness_(textureness),
         labels_(regions.labels),
+        before_(before),
         tolerance_(kTolerance *
                    static_cast<float>(options.tapa.relative_plane_distance)),
         depth_(*depth),
@@ -153,63 +158,57 @@ class RegionCompleter {
     for (size_t label = 1; label < planes_.size(); ++label) {
       planes_[label] =
           FindPlanes(anchors[label], options_.tapa.relative_plane_distance,
-                     options_.seed + label);
+                     options_.seed + label * 0x9E3779B97F4A7C15u);
     }
-  }
-
-  // Which decide whether a region's other plane is one.
-  void CountPixels() {
-    ForEachPixel([this](int row, int col, RegionPlanes* planes) {
-      ++planes->num_pixels;
-      planes->num_on_other += LiesOn(planes->other.plane, row, col) ? 1 : 0;
-    });
-  }
-
-  void Complete() {
-    ForEachPixel([this](int row, int col, RegionPlanes* planes) {
-      const size_t pixel = static_cast<size_t>(row) * labels_.width() + col;
-      const Vec3 ray = camera_.Ray(row, col);
-      const DepthNormal on_plane = PlaneHypothesis(
-          planes->own.plane, ray, problem_.depth_min, problem_.depth_max);
-      if (textureness_.At(row, col) >= kTextured || problem_.IsMasked(pixel) ||
-          on_plane.depth == 0 || !planes->own.IsKnownAt(on_plane.depth * ray) ||
-          LiesOn(planes->own.plane, row, col) || Stays(*planes, row, col)) {
-        return;
-      }
-      depth_.At(row, col) = on_plane.depth;
-      normal_.At(row, col) = on_plane.normal;
-      origin_.At(row, col) = kFromPlane;
-    });
-  }
-
- private:
-  // Calls visit(row, col, planes) for the pixels of regions that have a plane.
-  template <typename Visitor>
-  void ForEachPixel(const Visitor& visit) {
+    // Which decides whether a region's other plane is one.
     for (int row = 0; row < labels_.height(); ++row) {
       for (int col = 0; col < labels_.width(); ++col) {
         RegionPlanes& planes = planes_[labels_.At(row, col)];
-        if (planes.own.plane.distance > 0) {
-          visit(row, col, &planes);
-        }
+        ++planes.num_pixels;
+        planes.num_on_other +=
+            LiesOn(planes.other.plane, before_, row, col) ? 1 : 0;
       }
     }
   }
 
-  bool LiesOn(const Plane& plane, int row, int col) const {
-    const float depth = depth_.At(row, col);
-    if (plane.distance == 0) {
-      return false;
+  void CompleteRow(int row) {
+    for (int col = 0; col < labels_.width(); ++col) {
+      const RegionPlanes& planes = planes_[labels_.At(row, col)];
+      const size_t pixel = static_cast<size_t>(row) * labels_.width() + col;
+      if (planes.own.plane.distance == 0 || problem_.IsMasked(pixel) ||
+          textureness_.At(row, col) >= kTextured ||
+          LiesOn(planes.own.plane, depth_, row, col) ||
+          Stays(planes, row, col)) {
+        continue;
+      }
+      // Where it is known it may leave the range of depths: those are the
+      // sparse points', which surfaces without texture have none of.
+      const Vec3 ray = camera_.Ray(row, col);
+      const DepthNormal on_plane = PlaneAt(planes.own.plane, ray);
+      if (IsDepth(on_plane.depth) &&
+          planes.own.IsKnownAt(on_plane.depth * ray)) {
+        depth_.At(row, col) = on_plane.depth;
+        normal_.At(row, col) = on_plane.normal;
+        origin_.At(row, col) = kFromPlane;
+      }
     }
+  }
+
+ private:
+  // None lies on what is no plane.
+  bool LiesOn(const Plane& plane, const Map<float>& depths, int row,
+              int col) const {
+    const float depth = depths.At(row, col);
     const float on_plane = PlaneAt(plane, camera_.Ray(row, col)).depth;
-    return IsDepth(depth) &&
+    return plane.distance > 0 && IsDepth(depth) &&
            std::abs(depth - on_plane) <= tolerance_ * on_plane;
   }
 
+  // Whether a pixel belongs to the other plane of its region.
   bool Stays(const RegionPlanes& planes, int row, int col) const {
     return planes.num_on_other >= kMinOtherShare * planes.num_pixels &&
-           LiesOn(planes.other.plane, row, col) &&
-           planes.other.IsKnownAt(depth_.At(row, col) * camera_.Ray(row, col));
+           LiesOn(planes.other.plane, before_, row, col) &&
+           planes.other.IsKnownAt(before_.At(row, col) * camera_.Ray(row, col));
   }
 
   const Options& options_;
@@ -217,6 +216,7 @@ class RegionCompleter {
   const RefCamera& camera_;
   const Map<float>& textureness_;
   const Map<int32_t>& labels_;
+  const Map<float>& before_;
   const float tolerance_;
   Map<float>& depth_;
   Map<Vec3>& normal_;
@@ -225,6 +225,18 @@ class RegionCompleter {
   std::vector<RegionPlanes> planes_;
 };
 
+// Textureness of 1 where masked: what is there connects nothing.
+Map<float> WithoutMasked(const Problem& problem,
+                         const Map<float>& textureness) {
+  Map<float> result = textureness;
+  for (size_t i = 0; i < result.size(); ++i) {
+    if (problem.IsMasked(i)) {
+      result.data()[i] = 1;
+    }
+  }
+  return result;
+}
+
 }  // namespace
 
 void CompleteRegions(const Options& options, const Problem& problem,
@@ -232,19 +244,22 @@ void CompleteRegions(const Options& options, const Problem& problem,
                      const Map<Rgb>& color, const Map<float>& textureness,
                      Map<float>* depth, Map<Vec3>* normal,
                      Map<uint8_t>* origin) {
+  const Map<float> before = *depth;
   const std::vector<Anchor> anchors =
-      FindAnchors(options.tapa, *depth, textureness, kClearTexture);
+      FindAnchors(options.tapa, before, textureness, kClearTexture);
   const Map<float> steps = MeasureSteps(color);
+  const Map<float> unmasked = WithoutMasked(problem, textureness);
   for (const float max_step : kSteps) {
     if (control.IsStopped()) {
       return;
     }
-    const EvenRegions regions = FindEvenRegions(steps, textureness, max_step);
-    RegionCompleter completer(options, problem, camera, textureness, regions,
-                              depth, normal, origin);
-    completer.Fit(GatherAnchors(camera, *depth, anchors, regions));
-    completer.CountPixels();
-    completer.Complete();
+    const EvenRegions regions = FindEvenRegions(steps, unmasked, max_step);
+    RegionCompleter completer(options, problem, camera, unmasked, regions,
+                              before, depth, normal, origin);
+    completer.Fit(GatherAnchors(camera, before, anchors, regions));
+    for (int row = 0; row < depth->height() && !control.IsStopped(); ++row) {
+      completer.CompleteRow(row);
+    }
   }
 }
 

@@ -28,14 +28,15 @@ namespace tapa {
 // anchors along a line say nothing of what is beside it. But where there is no
 // edge between two surfaces a region holds both: pixels stay that lie on the
 // plane through most of the anchors that the first one misses, at least 8,
-// where that one is known, if a tenth of the region's pixels lie on it.
+// where that one is known, if a tenth of the region's pixels lay on it before
+// this step. The plane may leave the problem's range of depths.
 //
 // Regions are tried that end at steps of 6 grey levels, then those that end at
 // 3: what is found in the smaller ones has the last word.
 //
-// color: the reference photograph. Depth (0: none), normal and origin
-// (completion.h) are the view's and of its size. Ends early once
-// control.stopped() says so.
+// Masked pixels are in no region. color: the reference photograph. Depth (0:
+// none), normal and origin (completion.h) are the view's and of its size. Ends
+// early once control.stopped() says so.
 void CompleteRegions(const Options& options, const Problem& problem,
                      const Control& control, const RefCamera& camera,
                      const Map<Rgb>& color, const Map<float>& textureness,
