@@ -1,7 +1,8 @@
 // Speed of TAPA's stages at one megapixel next to naive references, in one run.
-// Superpixels, means over similar pixels, the drawing of planes, sightings and
-// silhouettes have none: the first two are OpenCV's, the third one table
-// look-up for every pixel, and the last two ask all that a reference would.
+// Superpixels, means over similar pixels, the drawing of planes, sightings,
+// silhouettes and regions have none: the first two are OpenCV's, as is most of
+// the last, the third is one table look-up for every pixel, and the others ask
+// all that a reference would.
 
 #include <benchmark/benchmark.h>
 
@@ -12,8 +13,8 @@
 #include "src/mvs/camera_table.h"
 #include "src/mvs/sweep/random.h"
 #include "src/mvs/tapa/fill.h"
-#include "src/mvs/tapa/sightings.h"
 #include "src/mvs/tapa/region_planes.h"
+#include "src/mvs/tapa/sightings.h"
 #include "src/mvs/tapa/silhouettes.h"
 #include "src/mvs/tapa/similar_mean.h"
 #include "src/mvs/tapa/speckles.h"

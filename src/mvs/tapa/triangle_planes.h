@@ -51,9 +51,9 @@ constexpr double kClearTexture = 0.7;
 // longest side, at least 4.
 int AnchorSpacing(int width, int height);
 
-// At most one in each square: of the pixels
-// of at least a textureness whose depth most pixels beside them share, the one
-// with most texture. Depth 0: there is no estimate.
+// At most one in each square: of the pixels of at least a textureness whose
+// depth most pixels beside them share, the one with most texture. Depth 0:
+// there is no estimate.
 std::vector<Anchor> FindAnchors(const TapaOptions& options,
                                 const Map<float>& depth,
                                 const Map<float>& textureness,
