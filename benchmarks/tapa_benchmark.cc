@@ -274,6 +274,20 @@ void BM_SimilarMean(benchmark::State& state) {
 }
 BENCHMARK(BM_SimilarMean)->Unit(benchmark::kMillisecond);
 
+// A step of completion, on maps of its own each time.
+template <typename Step>
+void RunStep(benchmark::State& state, const Step& step) {
+  const Work& work = Work::Get();
+  for (auto _ : state) {
+    state.PauseTiming();
+    Map<float> depth = work.depth;
+    Map<Vec3> normal = work.normal;
+    Map<uint8_t> origin(kWidth, kHeight);
+    state.ResumeTiming();
+    step(&depth, &normal, &origin);
+  }
+}
+
 // Texture in every 24th column, so that half of the pixels ask.
 void BM_Silhouettes(benchmark::State& state) {
   const Work& work = Work::Get();
@@ -283,15 +297,11 @@ void BM_Silhouettes(benchmark::State& state) {
       textureness.At(row, col) = 0.9f;
     }
   }
-  for (auto _ : state) {
-    state.PauseTiming();
-    Map<float> depth = work.depth;
-    Map<Vec3> normal = work.normal;
-    Map<uint8_t> origin(kWidth, kHeight);
-    state.ResumeTiming();
-    MendSilhouettes(Options(), work.scene.problem(), Control(), work.camera,
-                    work.color, textureness, &depth, &normal, &origin);
-  }
+  RunStep(
+      state, [&](Map<float>* depth, Map<Vec3>* normal, Map<uint8_t>* origin) {
+        MendSilhouettes(Options(), work.scene.problem(), Control(), work.camera,
+                        work.color, textureness, depth, normal, origin);
+      });
 }
 BENCHMARK(BM_Silhouettes)->Unit(benchmark::kMillisecond);
 
@@ -307,15 +317,11 @@ void BM_Regions(benchmark::State& state) {
       }
     }
   }
-  for (auto _ : state) {
-    state.PauseTiming();
-    Map<float> depth = work.depth;
-    Map<Vec3> normal = work.normal;
-    Map<uint8_t> origin(kWidth, kHeight);
-    state.ResumeTiming();
-    CompleteRegions(Options(), work.scene.problem(), Control(), work.camera,
-                    color, textureness, &depth, &normal, &origin);
-  }
+  RunStep(
+      state, [&](Map<float>* depth, Map<Vec3>* normal, Map<uint8_t>* origin) {
+        CompleteRegions(Options(), work.scene.problem(), Control(), work.camera,
+                        color, textureness, depth, normal, origin);
+      });
 }
 BENCHMARK(BM_Regions)->Unit(benchmark::kMillisecond);
 

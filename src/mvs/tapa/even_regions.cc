@@ -6,11 +6,12 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "src/mvs/tapa/textureness.h"
+
 namespace tapa {
 namespace {
 
 constexpr double kSmoothing = 2;
-constexpr float kTextured = 0.5f;
 constexpr int kBridge = 2;
 constexpr float kReach = 8;
 constexpr double kMinShare = 0.002;

@@ -99,12 +99,13 @@ int NumTrials(double inlier_ratio) {
                                std::log(1 - std::max(good, 1e-9)))));
 }
 
-Fit RunRansac(const std::vector<Vec3>& points, double max_distance,
-              uint64_t key) {
+// The fit through three drawn points that counts most, of num_scored.
+// through(a, b, c): the fit; count(fit): how many points lie on it.
+template <typename Through, typename Count>
+auto RunRansac(const std::vector<Vec3>& points, double num_scored, uint64_t key,
+               const Through& through, const Count& count_inliers) {
   const size_t size = points.size();
-  const size_t step = (size + kMaxNumScored - 1) / kMaxNumScored;
-  const double num_scored = std::ceil(static_cast<double>(size) / step);
-  Fit best;
+  decltype(through(points[0], points[0], points[0])) best;
   int best_count = 0;
   int num_trials = kMaxNumTrials;
   for (int trial = 0; trial < num_trials; ++trial) {
@@ -114,11 +115,11 @@ Fit RunRansac(const std::vector<Vec3>& points, double max_distance,
       return points[std::min(static_cast<size_t>(random.Uniform(i) * size),
                              size - 1)];
     };
-    const Fit fit = ThroughPoints(draw(0), draw(1), draw(2));
+    const auto fit = through(draw(0), draw(1), draw(2));
     if (!fit.valid) {
       continue;
     }
-    const int count = CountInliers(fit, points, step, max_distance);
+    const int count = count_inliers(fit);
     if (count > best_count) {
       best = fit;
       best_count = count;
@@ -182,30 +183,20 @@ FittedPlane FitPlaneToDepths(const std::vector<Vec3>& points, float max_error,
   if (size < static_cast<size_t>(min_num_inliers)) {
     return result;
   }
-  DepthFit best;
-  int best_count = 0;
-  int num_trials = kMaxNumTrials;
-  for (int trial = 0; trial < num_trials; ++trial) {
-    const Random random(key, trial, 0);
-    std::vector<Vec3> drawn;
-    for (int i = 0; i < 3; ++i) {
-      drawn.push_back(points[std::min(
-          static_cast<size_t>(random.Uniform(i) * size), size - 1)]);
-    }
-    const DepthFit fit = FitDepths(drawn, [](const Vec3&) { return true; });
-    const int count = fit.valid ? CountInliers(fit, points, max_error) : 0;
-    if (count > best_count) {
-      best = fit;
-      best_count = count;
-      num_trials = NumTrials(static_cast<double>(count) / size);
-    }
-  }
+  DepthFit best = RunRansac(
+      points, static_cast<double>(size), key,
+      [](const Vec3& a, const Vec3& b, const Vec3& c) {
+        return FitDepths({a, b, c}, [](const Vec3&) { return true; });
+      },
+      [&](const DepthFit& fit) {
+        return CountInliers(fit, points, max_error);
+      });
   for (int i = 0; i < kNumRefits && best.valid; ++i) {
     best = FitDepths(points, [&, other = best](const Vec3& point) {
       return IsInlier(other, point, max_error);
     });
   }
-  best_count = best.valid ? CountInliers(best, points, max_error) : 0;
+  const int best_count = best.valid ? CountInliers(best, points, max_error) : 0;
   if (best_count < min_num_inliers) {
     return result;
   }
@@ -224,7 +215,12 @@ FittedPlane FitPlane(const std::vector<Vec3>& points, float max_distance,
   if (points.size() < static_cast<size_t>(min_num_inliers)) {
     return result;
   }
-  Fit best = RunRansac(points, max_distance, key);
+  const size_t step = (points.size() + kMaxNumScored - 1) / kMaxNumScored;
+  Fit best =
+      RunRansac(points, std::ceil(static_cast<double>(points.size()) / step),
+                key, ThroughPoints, [&](const Fit& fit) {
+                  return CountInliers(fit, points, step, max_distance);
+                });
   if (!best.valid) {
     return result;
   }

@@ -12,6 +12,7 @@
 #include "src/mvs/tapa/completion.h"
 #include "src/mvs/tapa/even_regions.h"
 #include "src/mvs/tapa/plane_fit.h"
+#include "src/mvs/tapa/textureness.h"
 #include "src/mvs/tapa/triangle_planes.h"
 
 namespace tapa {
@@ -19,8 +20,6 @@ namespace {
 
 // Where regions end, in grey levels.
 constexpr float kSteps[] = {6, 3};
-// Above this a pixel has texture, and an estimate of its own.
-constexpr float kTextured = 0.5f;
 // Of the anchors of a region's plane.
 constexpr int kMinNumAnchors = 8;
 constexpr float kMinShare = 0.35f;
@@ -137,12 +136,11 @@ class RegionCompleter {
  public:
   // before: depths of which other planes are made; what a step has completed is
   // no evidence for the next one.
-  RegionCompleter(const Options& options, const Problem& problem,
-                  const RefCamera& camera, const Map<float>& textureness,
-                  const EvenRegions& regions, const Map<float>& before,
-                  Map<float>* depth, Map<Vec3>* normal, Map<uint8_t>* origin)
+  RegionCompleter(const Options& options, const RefCamera& camera,
+                  const Map<float>& textureness, const EvenRegions& regions,
+                  const Map<float>& before, Map<float>* depth,
+                  Map<Vec3>* normal, Map<uint8_t>* origin)
       : options_(options),
-        problem_(problem),
         camera_(camera),
         textureness_(textureness),
         labels_(regions.labels),
@@ -174,8 +172,7 @@ class RegionCompleter {
   void CompleteRow(int row) {
     for (int col = 0; col < labels_.width(); ++col) {
       const RegionPlanes& planes = planes_[labels_.At(row, col)];
-      const size_t pixel = static_cast<size_t>(row) * labels_.width() + col;
-      if (planes.own.plane.distance == 0 || problem_.IsMasked(pixel) ||
+      if (planes.own.plane.distance == 0 ||
           textureness_.At(row, col) >= kTextured ||
           LiesOn(planes.own.plane, depth_, row, col) ||
           Stays(planes, row, col)) {
@@ -212,7 +209,6 @@ class RegionCompleter {
   }
 
   const Options& options_;
-  const Problem& problem_;
   const RefCamera& camera_;
   const Map<float>& textureness_;
   const Map<int32_t>& labels_;
@@ -225,7 +221,7 @@ class RegionCompleter {
   std::vector<RegionPlanes> planes_;
 };
 
-// Textureness of 1 where masked: what is there connects nothing.
+// Textureness of 1 where masked: what is there stays, and connects nothing.
 Map<float> WithoutMasked(const Problem& problem,
                          const Map<float>& textureness) {
   Map<float> result = textureness;
@@ -254,8 +250,8 @@ void CompleteRegions(const Options& options, const Problem& problem,
       return;
     }
     const EvenRegions regions = FindEvenRegions(steps, unmasked, max_step);
-    RegionCompleter completer(options, problem, camera, unmasked, regions,
-                              before, depth, normal, origin);
+    RegionCompleter completer(options, camera, unmasked, regions, before, depth,
+                              normal, origin);
     completer.Fit(GatherAnchors(camera, before, anchors, regions));
     for (int row = 0; row < depth->height() && !control.IsStopped(); ++row) {
       completer.CompleteRow(row);

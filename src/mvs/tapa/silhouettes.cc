@@ -11,13 +11,11 @@
 #include "src/base/depth.h"
 #include "src/mvs/sweep/depth_normal.h"
 #include "src/mvs/tapa/completion.h"
+#include "src/mvs/tapa/textureness.h"
 
 namespace tapa {
 namespace {
 
-// Above this a pixel has texture. Not an option, for with those of completion
-// at values at which they decide nothing this would end, too.
-constexpr float kTextured = 0.5f;
 // Share of the weight that decides.
 constexpr float kMinShare = 0.5f;
 // Rows and columns of those who are asked. An even number, so that half of them

@@ -147,19 +147,8 @@ void TapaStages::Refine(Estimate* estimate) {
     CompleteWithTriangles(options_, problem_, control_, record_.textureness,
                           trusted, &depth, &estimate->normal, &record_.origin);
   }
-  if (options_.tapa.completion && options_.tapa.completion_silhouettes &&
-      !control_.IsStopped()) {
-    Map<Rgb> grey;
-    MendSilhouettes(options_, problem_, control_, camera_,
-                    ColorOf(problem_, &grey), record_.textureness, &depth,
-                    &estimate->normal, &record_.origin);
-  }
-  if (options_.tapa.completion && options_.tapa.completion_regions &&
-      !control_.IsStopped()) {
-    Map<Rgb> grey;
-    CompleteRegions(options_, problem_, control_, camera_,
-                    ColorOf(problem_, &grey), record_.textureness, &depth,
-                    &estimate->normal, &record_.origin);
+  if (options_.tapa.completion) {
+    FollowColors(estimate);
   }
   ClearOthers(estimate);
 }
@@ -229,6 +218,21 @@ void TapaStages::Fill(Estimate* estimate) const {
   fill.sigma_color = static_cast<float>(window.sigma_color);
   FillMissing(fill, camera_, *problem_.reference.image, &estimate->depth,
               &estimate->normal);
+}
+
+void TapaStages::FollowColors(Estimate* estimate) {
+  Map<Rgb> grey;
+  const Map<Rgb>& color = ColorOf(problem_, &grey);
+  if (options_.tapa.completion_silhouettes && !control_.IsStopped()) {
+    MendSilhouettes(options_, problem_, control_, camera_, color,
+                    record_.textureness, &estimate->depth, &estimate->normal,
+                    &record_.origin);
+  }
+  if (options_.tapa.completion_regions && !control_.IsStopped()) {
+    CompleteRegions(options_, problem_, control_, camera_, color,
+                    record_.textureness, &estimate->depth, &estimate->normal,
+                    &record_.origin);
+  }
 }
 
 // Of the pixels that have got an estimate since the last call.

@@ -65,6 +65,7 @@ class TapaStages {
   void Complete(const Map<float>& evidence, const Map<float>& trusted,
                 Estimate* estimate);
   void Fill(Estimate* estimate) const;
+  void FollowColors(Estimate* estimate);
   void NoteOrigin(Origin origin, const Map<float>& depth);
   void ClearOthers(Estimate* estimate) const;
   int MaxSpeckleSize() const;

@@ -21,6 +21,11 @@ struct TexturenessOptions {
   double min_textureness = 0.5;
 };
 
+// Above this a pixel has texture for silhouettes and regions. Not an option,
+// for with those of completion at values at which they decide nothing these
+// would end, too.
+constexpr float kTextured = 0.5f;
+
 // Those of a run.
 TexturenessOptions TexturenessOf(const TapaOptions& options);
 
