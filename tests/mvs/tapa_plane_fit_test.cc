@@ -359,23 +359,32 @@ TEST(FitPlane, KeyDecidesTheResult) {
   EXPECT_GT(num_different, 0);
 }
 
+// Each a group of its own.
+std::vector<PointGroup> Alone(const std::vector<Vec3>& points) {
+  std::vector<PointGroup> groups;
+  for (const Vec3& point : points) {
+    groups.push_back({point});
+  }
+  return groups;
+}
+
 TEST(FitPlaneToDepths, IsExactAndLeavesOutliersOut) {
   std::mt19937 random(8);
   std::vector<Vec3> points = PointsOnPlane(60, 0, &random);
   AddOutliers(40, &random, &points);
-  const FittedPlane fit = FitPlaneToDepths(points, 0.01f, 8, 1);
+  const FittedPlane fit = FitPlaneToDepths(Alone(points), 0.01f, 8, 1);
   EXPECT_EQ(NumInliers(fit, points), 60);
   const double norm = std::sqrt(0.3 * 0.3 + 0.2 * 0.2 + 1);
   ExpectPlane(fit.plane, {{0.3 / norm, -0.2 / norm, -1 / norm}, 4 / norm},
               1e-4);
-  const FittedPlane again = FitPlaneToDepths(points, 0.01f, 8, 1);
+  const FittedPlane again = FitPlaneToDepths(Alone(points), 0.01f, 8, 1);
   EXPECT_EQ(std::memcmp(&fit.plane, &again.plane, sizeof(Plane)), 0);
 }
 
 TEST(FitPlaneToDepths, HasTheLeastErrorsOfDepth) {
   std::mt19937 random(9);
   const std::vector<Vec3> points = PointsOnPlane(200, 0.02f, &random);
-  const FittedPlane fit = FitPlaneToDepths(points, 0.05f, 8, 1);
+  const FittedPlane fit = FitPlaneToDepths(Alone(points), 0.05f, 8, 1);
   ASSERT_EQ(NumInliers(fit, points), 200);
   const auto sum_of_squares = [&points](const Plane& plane) {
     double sum = 0;
@@ -400,6 +409,66 @@ TEST(FitPlaneToDepths, HasTheLeastErrorsOfDepth) {
   }
 }
 
+// A crowd in few groups says no more than its groups do.
+TEST(FitPlaneToDepths, GroupsCountOnce) {
+  std::mt19937 random(12);
+  const std::vector<Vec3> points = PointsOnPlane(20, 0, &random);
+  std::vector<PointGroup> groups = Alone(points);
+  for (int i = 0; i < 10; ++i) {
+    PointGroup crowd = PointsOnPlane(50, 0, &random);
+    for (Vec3& point : crowd) {
+      point.z += 1;
+    }
+    groups.push_back(crowd);
+  }
+  const FittedPlane fit = FitPlaneToDepths(groups, 0.01f, 8, 1);
+  EXPECT_NEAR(fit.inlier_ratio, 20.0 / 30, 1e-6);
+  for (const Vec3& point : points) {
+    EXPECT_NEAR(Dot(fit.plane.normal, point), -fit.plane.distance, 1e-4);
+  }
+  EXPECT_EQ(FitPlaneToDepths(groups, 0.01f, 21, 1).inlier_ratio, 0);
+  // A group counts for every plane that one of its points is on.
+  for (size_t i = 20; i < groups.size(); ++i) {
+    groups[i].push_back(points[i - 20]);
+  }
+  EXPECT_EQ(FitPlaneToDepths(groups, 0.01f, 21, 1).inlier_ratio, 1);
+}
+
+// The points of a group have the weight of one together.
+TEST(FitPlaneToDepths, AveragesWithinGroups) {
+  std::mt19937 random(14);
+  std::vector<PointGroup> groups;
+  for (const Vec3& point : PointsOnPlane(60, 0, &random)) {
+    PointGroup group(99, point);
+    group[0].z *= 1.01f;
+    groups.push_back({point});
+    groups.push_back(group);
+    for (Vec3& other : groups.back()) {
+      other.z += 0.02f;
+    }
+  }
+  const FittedPlane fit = FitPlaneToDepths(groups, 0.02f, 8, 1);
+  ASSERT_EQ(fit.inlier_ratio, 1);
+  // Half way between the single ones and the crowds.
+  const float depth = -fit.plane.distance / fit.plane.normal.z;
+  EXPECT_NEAR(depth, 4.01, 0.002);
+}
+
+// Of two surfaces that are as large the one that its points are nearer to.
+TEST(FitPlaneToDepths, PrefersSmallErrors) {
+  std::mt19937 random(15);
+  const std::vector<Vec3> exact = PointsOnPlane(50, 0, &random);
+  std::vector<Vec3> points = PointsOnPlane(50, 0.035f, &random);
+  for (Vec3& point : points) {
+    point.z += 1;
+  }
+  points.insert(points.end(), exact.begin(), exact.end());
+  for (uint64_t key = 0; key < 20; ++key) {
+    const FittedPlane fit = FitPlaneToDepths(Alone(points), 0.01f, 8, key);
+    EXPECT_NEAR(Dot(fit.plane.normal, exact[0]), -fit.plane.distance, 1e-3);
+  }
+}
+
 TEST(FitPlaneToDepths, ThereIsNoneWithoutThreeDirections) {
   std::mt19937 random(10);
   std::vector<Vec3> line;
@@ -408,16 +477,16 @@ TEST(FitPlaneToDepths, ThereIsNoneWithoutThreeDirections) {
     line.push_back({0.1f * i, 1, 3});
     edge_on.push_back({0.1f * i, 0, 3.0f + i % 7});
   }
-  EXPECT_EQ(FitPlaneToDepths(line, 0.01f, 8, 1).inlier_ratio, 0);
-  EXPECT_EQ(FitPlaneToDepths(edge_on, 0.01f, 8, 1).inlier_ratio, 0);
+  EXPECT_EQ(FitPlaneToDepths(Alone(line), 0.01f, 8, 1).inlier_ratio, 0);
+  EXPECT_EQ(FitPlaneToDepths(Alone(edge_on), 0.01f, 8, 1).inlier_ratio, 0);
   EXPECT_EQ(FitPlaneToDepths({}, 0.01f, 8, 1).inlier_ratio, 0);
-  EXPECT_EQ(
-      FitPlaneToDepths(PointsOnPlane(7, 0, &random), 0.01f, 8, 1).inlier_ratio,
-      0);
-  EXPECT_EQ(
-      FitPlaneToDepths(std::vector<Vec3>(20, {kNan, kInf, kNan}), 0.01f, 8, 1)
-          .inlier_ratio,
-      0);
+  EXPECT_EQ(FitPlaneToDepths(Alone(PointsOnPlane(7, 0, &random)), 0.01f, 8, 1)
+                .inlier_ratio,
+            0);
+  EXPECT_EQ(FitPlaneToDepths(Alone(std::vector<Vec3>(20, {kNan, kInf, kNan})),
+                             0.01f, 8, 1)
+                .inlier_ratio,
+            0);
 }
 
 }  // namespace

@@ -2,11 +2,15 @@
 
 #include <cmath>
 #include <limits>
+#include <random>
+#include <vector>
 
 #include "src/base/depth.h"
 #include "src/mvs/sweep/plane.h"
 #include "src/mvs/tapa/completion.h"
 #include "src/mvs/tapa/region_planes.h"
+#include "src/mvs/tapa/surface_anchors.h"
+#include "tests/mvs/synthetic.h"
 
 namespace tapa {
 namespace {
@@ -109,6 +113,67 @@ TEST(Regions, StayWithFewAnchors) {
     const bool in_corner = row < kFrame && col < kFrame;
     scene.textureness.At(row, col) = in_corner ? 0.9f : 0.2f;
   });
+  const Map<float> before = scene.depth;
+  scene.Complete();
+  scene.ForEach([&](int row, int col) {
+    ASSERT_EQ(scene.depth.At(row, col), before.At(row, col));
+  });
+}
+
+// Anchors of other views, which see the region from where it has an edge.
+TEST(Regions, TakeThePlaneThroughWhatOtherViewsSee) {
+  Scene scene;
+  scene.textureness = Map<float>(kWidth, kHeight, 0.2f);
+  std::mt19937 random(3);
+  const Map<uint8_t> image = RandomImage(kWidth, kHeight, &random);
+  Map<float> source_depth(kWidth, kHeight);
+  scene.ForEach([&](int row, int col) {
+    source_depth.At(row, col) = scene.On(scene.plane, row, col);
+  });
+  View view;
+  view.camera = {200, 200, 80.5, 50.5};
+  view.image = &image;
+  view.depth = &source_depth;
+  scene.problem.reference = view;
+  scene.problem.sources = {view};
+  const Map<float> before = scene.depth;
+
+  scene.options.geom_consistency = false;
+  scene.Complete();
+  EXPECT_EQ(scene.depth.At(50, 80), before.At(50, 80));
+  scene.options.geom_consistency = true;
+  scene.Complete();
+  scene.ForEach([&scene](int row, int col) {
+    ASSERT_NEAR(scene.depth.At(row, col) / scene.On(scene.plane, row, col), 1,
+                0.011)
+        << row << " " << col;
+  });
+}
+
+// Many views that see one spot are no more than one that does.
+TEST(Regions, StayWhereOnlyASpotIsSeenByManyViews) {
+  Scene scene;
+  scene.textureness = Map<float>(kWidth, kHeight, 0.2f);
+  std::mt19937 random(3);
+  Map<uint8_t> image(kWidth, kHeight, 128);
+  const Map<uint8_t> noise = RandomImage(2, 2, &random);
+  Map<float> source_depth(kWidth, kHeight);
+  scene.ForEach([&](int row, int col) {
+    source_depth.At(row, col) = scene.On(scene.plane, row, col);
+    if (row / 2 == 24 && col / 2 == 40) {
+      image.At(row, col) = noise.At(row % 2, col % 2);
+    }
+  });
+  View view;
+  view.camera = {200, 200, 80.5, 50.5};
+  view.image = &image;
+  view.depth = &source_depth;
+  scene.problem.reference = view;
+  scene.problem.sources = std::vector<View>(20, view);
+  ASSERT_GE(FindSurfaceAnchors(scene.options, scene.problem, Control(),
+                               scene.camera, scene.depth, scene.textureness)
+                .size(),
+            40u);
   const Map<float> before = scene.depth;
   scene.Complete();
   scene.ForEach([&](int row, int col) {

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "src/mvs/sweep/random.h"
 
@@ -99,31 +100,33 @@ int NumTrials(double inlier_ratio) {
                                std::log(1 - std::max(good, 1e-9)))));
 }
 
-// The fit through three drawn points that counts most, of num_scored.
-// through(a, b, c): the fit; count(fit): how many points lie on it.
-template <typename Through, typename Count>
-auto RunRansac(const std::vector<Vec3>& points, double num_scored, uint64_t key,
-               const Through& through, const Count& count_inliers) {
-  const size_t size = points.size();
-  decltype(through(points[0], points[0], points[0])) best;
-  int best_count = 0;
+// One of `size`, by the i-th number of a trial.
+size_t DrawIndex(const Random& random, int i, size_t size) {
+  // Rounding may reach the size where that is large.
+  return std::min(static_cast<size_t>(random.Uniform(i) * size), size - 1);
+}
+
+// The fit through three drawn points that scores most. draw(random, i): the
+// i-th of them; through(a, b, c): the fit; score(fit): how much speaks for it.
+// most: the score of a fit to all points, of which a share ends the trials
+// early; infinity: none does.
+template <typename Drawer, typename Through, typename Score>
+auto RunRansac(double most, uint64_t key, const Drawer& draw,
+               const Through& through, const Score& score) {
+  decltype(through(Vec3(), Vec3(), Vec3())) best;
+  double best_score = 0;
   int num_trials = kMaxNumTrials;
   for (int trial = 0; trial < num_trials; ++trial) {
     const Random random(key, trial, 0);
-    const auto draw = [&](int i) {
-      // Rounding may reach the size where that is large.
-      return points[std::min(static_cast<size_t>(random.Uniform(i) * size),
-                             size - 1)];
-    };
-    const auto fit = through(draw(0), draw(1), draw(2));
+    const auto fit = through(draw(random, 0), draw(random, 1), draw(random, 2));
     if (!fit.valid) {
       continue;
     }
-    const int count = count_inliers(fit);
-    if (count > best_count) {
+    const double fit_score = score(fit);
+    if (fit_score > best_score) {
       best = fit;
-      best_count = count;
-      num_trials = NumTrials(count / num_scored);
+      best_score = fit_score;
+      num_trials = NumTrials(fit_score / most);
     }
   }
   return best;
@@ -136,28 +139,56 @@ struct DepthFit {
   bool valid = false;
 };
 
-bool IsInlier(const DepthFit& fit, const Vec3& point, double max_error) {
-  return std::abs(fit.m.dot(ToEigen(point)) - 1) <= max_error;
+double DepthError(const DepthFit& fit, const Vec3& point) {
+  return std::abs(fit.m.dot(ToEigen(point)) - 1);
 }
 
-int CountInliers(const DepthFit& fit, const std::vector<Vec3>& points,
-                 double max_error) {
-  return static_cast<int>(std::count_if(
-      points.begin(), points.end(),
-      [&](const Vec3& point) { return IsInlier(fit, point, max_error); }));
+double SmallestError(const DepthFit& fit, const PointGroup& group) {
+  double smallest = DepthError(fit, group[0]);
+  for (const Vec3& point : group) {
+    smallest = std::min(smallest, DepthError(fit, point));
+  }
+  return smallest;
+}
+
+int CountGroups(const DepthFit& fit, const std::vector<PointGroup>& groups,
+                double max_error) {
+  return static_cast<int>(
+      std::count_if(groups.begin(), groups.end(), [&](const PointGroup& group) {
+        return SmallestError(fit, group) <= max_error;
+      }));
+}
+
+double ScoreGroups(const DepthFit& fit, const std::vector<PointGroup>& groups,
+                   double max_error) {
+  double score = 0;
+  for (const PointGroup& group : groups) {
+    const double error = SmallestError(fit, group) / max_error;
+    // Not of NaN.
+    score += error <= 1 ? 1 - error * error : 0;
+  }
+  return score;
 }
 
 // Least squares over the points that `take` says.
 template <typename Take>
-DepthFit FitDepths(const std::vector<Vec3>& points, const Take& take) {
+DepthFit FitDepths(const std::vector<PointGroup>& groups, const Take& take) {
   Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
   Vector3d sum = Vector3d::Zero();
-  for (const Vec3& point : points) {
-    if (take(point)) {
-      const Vector3d x = ToEigen(point);
-      squares += x * x.transpose();
-      sum += x;
+  for (const PointGroup& group : groups) {
+    Eigen::Matrix3d group_squares = Eigen::Matrix3d::Zero();
+    Vector3d group_sum = Vector3d::Zero();
+    int count = 0;
+    for (const Vec3& point : group) {
+      if (take(point)) {
+        const Vector3d x = ToEigen(point);
+        group_squares += x * x.transpose();
+        group_sum += x;
+        ++count;
+      }
     }
+    squares += group_squares / std::max(count, 1);
+    sum += group_sum / std::max(count, 1);
   }
   // Points on a line, or in a plane with the camera's centre, have two
   // directions at most.
@@ -175,36 +206,38 @@ DepthFit FitDepths(const std::vector<Vec3>& points, const Take& take) {
 
 }  // namespace
 
-FittedPlane FitPlaneToDepths(const std::vector<Vec3>& points, float max_error,
-                             int min_num_inliers, uint64_t key) {
+FittedPlane FitPlaneToDepths(const std::vector<PointGroup>& groups,
+                             float max_error, int min_num_groups,
+                             uint64_t key) {
   FittedPlane result;
-  min_num_inliers = std::max(min_num_inliers, 3);
-  const size_t size = points.size();
-  if (size < static_cast<size_t>(min_num_inliers)) {
+  const size_t size = groups.size();
+  if (groups.empty() || static_cast<int>(size) < min_num_groups) {
     return result;
   }
   DepthFit best = RunRansac(
-      points, static_cast<double>(size), key,
-      [](const Vec3& a, const Vec3& b, const Vec3& c) {
-        return FitDepths({a, b, c}, [](const Vec3&) { return true; });
+      std::numeric_limits<double>::infinity(), key,
+      [&](const Random& random, int i) {
+        const PointGroup& group = groups[DrawIndex(random, i, size)];
+        return group[DrawIndex(random, 3 + i, group.size())];
       },
-      [&](const DepthFit& fit) {
-        return CountInliers(fit, points, max_error);
-      });
+      [](const Vec3& a, const Vec3& b, const Vec3& c) {
+        return FitDepths({{a}, {b}, {c}}, [](const Vec3&) { return true; });
+      },
+      [&](const DepthFit& fit) { return ScoreGroups(fit, groups, max_error); });
   for (int i = 0; i < kNumRefits && best.valid; ++i) {
-    best = FitDepths(points, [&, other = best](const Vec3& point) {
-      return IsInlier(other, point, max_error);
+    best = FitDepths(groups, [&, other = best](const Vec3& point) {
+      return DepthError(other, point) <= max_error;
     });
   }
-  const int best_count = best.valid ? CountInliers(best, points, max_error) : 0;
-  if (best_count < min_num_inliers) {
+  const int count = best.valid ? CountGroups(best, groups, max_error) : 0;
+  if (count < std::max(min_num_groups, 1)) {
     return result;
   }
   const double norm = best.m.norm();
   const Eigen::Vector3f normal = (-best.m / norm).cast<float>();
   result.plane.normal = {normal(0), normal(1), normal(2)};
   result.plane.distance = static_cast<float>(1 / norm);
-  result.inlier_ratio = static_cast<float>(best_count) / size;
+  result.inlier_ratio = static_cast<float>(count) / size;
   return result;
 }
 
@@ -216,11 +249,15 @@ FittedPlane FitPlane(const std::vector<Vec3>& points, float max_distance,
     return result;
   }
   const size_t step = (points.size() + kMaxNumScored - 1) / kMaxNumScored;
-  Fit best =
-      RunRansac(points, std::ceil(static_cast<double>(points.size()) / step),
-                key, ThroughPoints, [&](const Fit& fit) {
-                  return CountInliers(fit, points, step, max_distance);
-                });
+  Fit best = RunRansac(
+      std::ceil(static_cast<double>(points.size()) / step), key,
+      [&](const Random& random, int i) {
+        return points[DrawIndex(random, i, points.size())];
+      },
+      ThroughPoints,
+      [&](const Fit& fit) {
+        return CountInliers(fit, points, step, max_distance);
+      });
   if (!best.valid) {
     return result;
   }

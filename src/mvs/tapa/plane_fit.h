@@ -27,13 +27,21 @@ struct FittedPlane {
 FittedPlane FitPlane(const std::vector<Vec3>& points, float max_distance,
                      int min_num_inliers, uint64_t key);
 
-// The same with errors of depth: the inliers are the points whose depth is off
-// by at most the share max_error of the plane's, as seen from the camera, and
-// the sum of the squares of these errors is least. For points that are far
-// apart, each as exact as its depth allows. max_distance of the result is 0,
-// and planes seen edge-on are some, too.
-FittedPlane FitPlaneToDepths(const std::vector<Vec3>& points, float max_error,
-                             int min_num_inliers, uint64_t key);
+// Points that count once, however many they are.
+using PointGroup = std::vector<Vec3>;
+
+// The same with errors of depth, and for groups of points: the inliers are the
+// points whose depth is off by at most the share max_error of the plane's, as
+// seen from the camera. The plane is the one that most groups have an inlier
+// of, those by their smallest error e as 1 - (e / max_error)^2 (MSAC: Torr and
+// Zisserman, 2000), and then that for which the sum over the groups of the mean
+// squares of their inliers' errors is least. For points that are far apart,
+// each as exact as its depth allows. There is none where fewer than
+// min_num_groups (at least 1) have an inlier. No group may be empty.
+// inlier_ratio of the result is the share of the groups, max_distance 0, and
+// planes seen edge-on are some, too.
+FittedPlane FitPlaneToDepths(const std::vector<PointGroup>& groups,
+                             float max_error, int min_num_groups, uint64_t key);
 
 }  // namespace tapa
 

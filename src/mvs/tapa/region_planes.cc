@@ -4,7 +4,9 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "src/base/depth.h"
@@ -12,6 +14,7 @@
 #include "src/mvs/tapa/completion.h"
 #include "src/mvs/tapa/even_regions.h"
 #include "src/mvs/tapa/plane_fit.h"
+#include "src/mvs/tapa/surface_anchors.h"
 #include "src/mvs/tapa/textureness.h"
 #include "src/mvs/tapa/triangle_planes.h"
 
@@ -20,43 +23,56 @@ namespace {
 
 // Where regions end, in grey levels.
 constexpr float kSteps[] = {6, 3};
-// Of the anchors of a region's plane.
-constexpr int kMinNumAnchors = 8;
-constexpr float kMinShare = 0.35f;
+// With anchors on a region's plane.
+constexpr int kMinNumSquares = 8;
+constexpr float kMinShare = 0.5f;
 // Share of a region's pixels that lie on its other plane.
 constexpr float kMinOtherShare = 0.1f;
-// Times relative_plane_distance: pixels this near to a plane lie on it.
-constexpr float kTolerance = 2;
 
-// In the frame of the camera.
-using RegionAnchors = std::vector<Vec3>;
+// In the frame of the camera. Those in one of the squares that have an anchor
+// each are a group, however many views see something there.
+using RegionAnchors = std::vector<PointGroup>;
 
-// The anchors in and around each region; those between two are of both.
-std::vector<RegionAnchors> GatherAnchors(const RefCamera& camera,
-                                         const Map<float>& depth,
-                                         const std::vector<Anchor>& anchors,
-                                         const EvenRegions& regions) {
-  const Map<int32_t>& labels = regions.labels;
-  const int reach = AnchorSpacing(labels.width(), labels.height());
-  std::vector<RegionAnchors> result(regions.count + 1);
-  for (const Anchor& anchor : anchors) {
-    std::set<int32_t> found;
-    int32_t last = EvenRegions::kNone;
-    for (int row = std::max(anchor.row - reach, 0);
-         row <= std::min(anchor.row + reach, labels.height() - 1); ++row) {
-      for (int col = std::max(anchor.col - reach, 0);
-           col <= std::min(anchor.col + reach, labels.width() - 1); ++col) {
-        const int32_t label = labels.At(row, col);
-        if (label != EvenRegions::kNone && label != last &&
-            std::hypot(row - anchor.row, col - anchor.col) <= reach) {
-          found.insert(label);
-          last = label;
-        }
+// Regions with a pixel up to `reach` away.
+std::set<int32_t> RegionsAround(const Anchor& pixel, int reach,
+                                const Map<int32_t>& labels) {
+  std::set<int32_t> found;
+  int32_t last = EvenRegions::kNone;
+  for (int row = std::max(pixel.row - reach, 0);
+       row <= std::min(pixel.row + reach, labels.height() - 1); ++row) {
+    for (int col = std::max(pixel.col - reach, 0);
+         col <= std::min(pixel.col + reach, labels.width() - 1); ++col) {
+      const int32_t label = labels.At(row, col);
+      if (label != EvenRegions::kNone && label != last &&
+          std::hypot(row - pixel.row, col - pixel.col) <= reach) {
+        found.insert(label);
+        last = label;
       }
     }
-    for (const int32_t label : found) {
-      result[label].push_back(depth.At(anchor.row, anchor.col) *
-                              camera.Ray(anchor.row, anchor.col));
+  }
+  return found;
+}
+
+// The anchors in and around each region; those between two are of both.
+std::vector<RegionAnchors> GatherAnchors(
+    const std::vector<SurfaceAnchor>& anchors, const EvenRegions& regions) {
+  const Map<int32_t>& labels = regions.labels;
+  const int size = AnchorSpacing(labels.width(), labels.height());
+  // By label, and by square.
+  std::vector<std::map<std::pair<int, int>, PointGroup>> groups(regions.count +
+                                                                1);
+  for (const auto& [pixel, point] : anchors) {
+    // FindAnchors leaves out the image's border.
+    const std::pair<int, int> square(std::max(pixel.row - 1, 0) / size,
+                                     std::max(pixel.col - 1, 0) / size);
+    for (const int32_t label : RegionsAround(pixel, size, labels)) {
+      groups[label][square].push_back(point);
+    }
+  }
+  std::vector<RegionAnchors> result(groups.size());
+  for (size_t label = 0; label < groups.size(); ++label) {
+    for (auto& [square, points] : groups[label]) {
+      result[label].push_back(std::move(points));
     }
   }
   return result;
@@ -66,7 +82,8 @@ std::vector<RegionAnchors> GatherAnchors(const RefCamera& camera,
 struct AnchoredPlane {
   // Distance 0: there is none.
   Plane plane;
-  // Inverse of the sum of X X^T over the anchors X on the plane.
+  // Inverse of the sum, over squares, of the mean X X^T of the anchors X on the
+  // plane.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
 
   // Whether the depth of a point on the plane is known as well as that of an
@@ -80,7 +97,8 @@ struct AnchoredPlane {
   }
 };
 
-// The plane through most anchors, and the anchors that do not lie on it.
+// The plane that most squares have an anchor on, the share of those, and the
+// anchors that do not lie on it.
 struct Split {
   AnchoredPlane plane;
   float share = 0;
@@ -90,25 +108,35 @@ struct Split {
 Split SplitByPlane(const RegionAnchors& anchors, double max_error,
                    uint64_t seed) {
   const FittedPlane fitted = FitPlaneToDepths(
-      anchors, static_cast<float>(max_error), kMinNumAnchors, seed);
+      anchors, static_cast<float>(max_error), kMinNumSquares, seed);
   Split split;
   if (fitted.inlier_ratio == 0) {
     return split;
   }
   split.plane.plane = fitted.plane;
   split.share = fitted.inlier_ratio;
-  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
-  for (const Vec3& anchor : anchors) {
-    const float offset =
-        Dot(fitted.plane.normal, anchor) + fitted.plane.distance;
-    if (std::abs(offset) <= max_error * fitted.plane.distance) {
-      const Eigen::Vector3d x(anchor.x, anchor.y, anchor.z);
-      squares += x * x.transpose();
-    } else {
-      split.others.push_back(anchor);
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  for (const PointGroup& square : anchors) {
+    Eigen::Matrix3d products = Eigen::Matrix3d::Zero();
+    PointGroup others;
+    for (const Vec3& point : square) {
+      const float offset =
+          Dot(fitted.plane.normal, point) + fitted.plane.distance;
+      if (std::abs(offset) <= max_error * fitted.plane.distance) {
+        const Eigen::Vector3d x(point.x, point.y, point.z);
+        products += x * x.transpose();
+      } else {
+        others.push_back(point);
+      }
+    }
+    if (others.size() < square.size()) {
+      sum += products / (square.size() - others.size());
+    }
+    if (!others.empty()) {
+      split.others.push_back(std::move(others));
     }
   }
-  split.plane.covariance = squares.inverse();
+  split.plane.covariance = sum.inverse();
   return split;
 }
 
@@ -145,8 +173,7 @@ class RegionCompleter {
         textureness_(textureness),
         labels_(regions.labels),
         before_(before),
-        tolerance_(kTolerance *
-                   static_cast<float>(options.tapa.relative_plane_distance)),
+        tolerance_(static_cast<float>(options.tapa.relative_plane_distance)),
         depth_(*depth),
         normal_(*normal),
         origin_(*origin),
@@ -241,8 +268,8 @@ void CompleteRegions(const Options& options, const Problem& problem,
                      Map<float>* depth, Map<Vec3>* normal,
                      Map<uint8_t>* origin) {
   const Map<float> before = *depth;
-  const std::vector<Anchor> anchors =
-      FindAnchors(options.tapa, before, textureness, kClearTexture);
+  const std::vector<SurfaceAnchor> anchors = FindSurfaceAnchors(
+      options, problem, control, camera, before, textureness);
   const Map<float> steps = MeasureSteps(color);
   const Map<float> unmasked = WithoutMasked(problem, textureness);
   for (const float max_step : kSteps) {
@@ -252,7 +279,7 @@ void CompleteRegions(const Options& options, const Problem& problem,
     const EvenRegions regions = FindEvenRegions(steps, unmasked, max_step);
     RegionCompleter completer(options, camera, unmasked, regions, before, depth,
                               normal, origin);
-    completer.Fit(GatherAnchors(camera, before, anchors, regions));
+    completer.Fit(GatherAnchors(anchors, regions));
     for (int row = 0; row < depth->height() && !control.IsStopped(); ++row) {
       completer.CompleteRow(row);
     }

@@ -1,0 +1,73 @@
+#include "src/mvs/tapa/surface_anchors.h"
+
+#include "src/base/depth.h"
+#include "src/mvs/camera_table.h"
+#include "src/mvs/sweep/geometric_cost.h"
+#include "src/mvs/tapa/textureness.h"
+
+namespace tapa {
+namespace {
+
+std::vector<Anchor> FindAnchorsOf(const TapaOptions& options,
+                                  const View& view) {
+  return FindAnchors(options, *view.depth,
+                     ComputeTextureness(*view.image, TexturenessOf(options)),
+                     kClearTexture);
+}
+
+// Adds those of source view m that the reference view sees.
+void AddSourceAnchors(const Options& options, const Problem& problem,
+                      const CameraTable& table, int m, const Map<float>& depth,
+                      std::vector<SurfaceAnchor>* anchors) {
+  const View& view = problem.sources[m];
+  const SourceCameras views = table.sources();
+  const float nearest =
+      static_cast<float>(1 - options.tapa.relative_plane_distance);
+  for (const Anchor& anchor : FindAnchorsOf(options.tapa, view)) {
+    const Vec3 p = TransferPoint(views.B, views.g, m, anchor.col, anchor.row,
+                                 view.depth->At(anchor.row, anchor.col));
+    const float x = p.x / p.z;
+    const float y = p.y / p.z;
+    if (!(p.z > 0 && x >= -0.5f && y >= -0.5f && x < depth.width() - 0.5f &&
+          y < depth.height() - 0.5f)) {
+      continue;
+    }
+    const Anchor pixel = {static_cast<int>(y + 0.5f),
+                          static_cast<int>(x + 0.5f)};
+    const size_t index =
+        static_cast<size_t>(pixel.row) * depth.width() + pixel.col;
+    const float own = depth.data()[index];
+    const bool is_hidden = IsDepth(own) && own < nearest * p.z;
+    if (!problem.IsMasked(index) && !is_hidden) {
+      anchors->push_back({pixel, p.z * table.reference().Ray(y, x)});
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<SurfaceAnchor> FindSurfaceAnchors(const Options& options,
+                                              const Problem& problem,
+                                              const Control& control,
+                                              const RefCamera& camera,
+                                              const Map<float>& depth,
+                                              const Map<float>& textureness) {
+  std::vector<SurfaceAnchor> anchors;
+  for (const Anchor& anchor :
+       FindAnchors(options.tapa, depth, textureness, kClearTexture)) {
+    anchors.push_back({anchor, depth.At(anchor.row, anchor.col) *
+                                   camera.Ray(anchor.row, anchor.col)});
+  }
+  if (options.geom_consistency) {
+    const CameraTable table(problem);
+    for (size_t m = 0; m < problem.sources.size(); ++m) {
+      if (!control.IsStopped() && problem.sources[m].depth != nullptr) {
+        AddSourceAnchors(options, problem, table, static_cast<int>(m), depth,
+                         &anchors);
+      }
+    }
+  }
+  return anchors;
+}
+
+}  // namespace tapa
