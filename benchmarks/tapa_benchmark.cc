@@ -310,7 +310,7 @@ void BM_Silhouettes(benchmark::State& state) {
 BENCHMARK(BM_Silhouettes)->Unit(benchmark::kMillisecond);
 
 // Tiles of one colour in frames with texture, and ten source views with texture
-// everywhere.
+// on three quarters.
 void BM_Regions(benchmark::State& state) {
   const Work& work = Work::Get();
   const SyntheticPlane scene(WithTenSources());

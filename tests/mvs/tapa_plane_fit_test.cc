@@ -458,7 +458,7 @@ TEST(FitPlaneToDepths, AveragesWithinGroups) {
 TEST(FitPlaneToDepths, PrefersSmallErrors) {
   std::mt19937 random(15);
   const std::vector<Vec3> exact = PointsOnPlane(50, 0, &random);
-  std::vector<Vec3> points = PointsOnPlane(50, 0.035f, &random);
+  std::vector<Vec3> points = PointsOnPlane(50, 0.02f, &random);
   for (Vec3& point : points) {
     point.z += 1;
   }
@@ -467,6 +467,20 @@ TEST(FitPlaneToDepths, PrefersSmallErrors) {
     const FittedPlane fit = FitPlaneToDepths(Alone(points), 0.01f, 8, key);
     EXPECT_NEAR(Dot(fit.plane.normal, exact[0]), -fit.plane.distance, 1e-3);
   }
+}
+
+TEST(FitPlaneToDepths, LeavesOutWhatIsNoNumber) {
+  std::mt19937 random(16);
+  std::vector<PointGroup> groups = Alone(PointsOnPlane(40, 0, &random));
+  const FittedPlane expected = FitPlaneToDepths(groups, 0.01f, 40, 1);
+  ASSERT_EQ(expected.inlier_ratio, 1);
+  for (size_t i = 0; i < groups.size(); ++i) {
+    groups[i].insert(i % 2 ? groups[i].begin() : groups[i].end(),
+                     {kNan, 0, kInf});
+  }
+  const FittedPlane fit = FitPlaneToDepths(groups, 0.01f, 40, 1);
+  EXPECT_EQ(fit.inlier_ratio, 1);
+  EXPECT_NEAR(fit.plane.distance, expected.plane.distance, 1e-4);
 }
 
 TEST(FitPlaneToDepths, ThereIsNoneWithoutThreeDirections) {

@@ -1,10 +1,8 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <memory>
 #include <vector>
 
-#include "src/base/depth.h"
 #include "src/mvs/camera_table.h"
 #include "src/mvs/tapa/surface_anchors.h"
 #include "src/mvs/tapa/textureness.h"
@@ -58,6 +56,39 @@ TEST_F(SurfaceAnchorsTest, SourceViewsHaveSomeOnTheSurface) {
     EXPECT_NEAR(point.y / point.z, ray.y, 0.51f * camera.inv_fy);
     EXPECT_NEAR(Dot(normal, point), Dot(normal, any), 1e-3);
   }
+}
+
+// Sources of another size than the reference view.
+TEST_F(SurfaceAnchorsTest, SourceViewsMayBeOfAnySize) {
+  SyntheticOptions options;
+  options.width = 48;
+  options.height = 36;
+  options.focal_length = 60;
+  const SyntheticPlane small(options);
+  const Problem other = small.GeometricProblem();
+  problem_.sources = other.sources;
+  const std::vector<SurfaceAnchor> anchors = Find();
+  EXPECT_GT(anchors.size(), 50u);
+  const RefCamera camera = MakeRefCamera(problem_.reference.camera);
+  const Vec3 any = depth_.At(36, 48) * camera.Ray(36, 48);
+  bool is_beyond = false;
+  for (const auto& [pixel, point] : anchors) {
+    EXPECT_NEAR(Dot(scene_->normal(), point), Dot(scene_->normal(), any), 1e-3);
+    is_beyond |= pixel.row >= 36 && pixel.col >= 48;
+  }
+  EXPECT_TRUE(is_beyond);
+}
+
+TEST_F(SurfaceAnchorsTest, WhatIsBehindTheCameraIsNotSeen) {
+  for (View& view : problem_.sources) {
+    // Half a turn about the vertical axis.
+    for (const int i : {0, 1, 2, 6, 7, 8}) {
+      view.camera.R[i] *= -1;
+    }
+    view.camera.t[0] *= -1;
+    view.camera.t[2] *= -1;
+  }
+  EXPECT_TRUE(Find().empty());
 }
 
 TEST_F(SurfaceAnchorsTest, OneViewHasOneInASquare) {

@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 // Hypotheses are compared on at most this many of the points.
 constexpr int kMaxNumScored = 1000;
 constexpr int kMaxNumTrials = 300;
-// Trials end when a better plane is missed with this probability.
+// FitPlane's trials end when a better plane is missed with this probability.
 constexpr double kMissProbability = 1e-3;
 constexpr int kNumRefits = 3;
 
@@ -144,7 +144,7 @@ double DepthError(const DepthFit& fit, const Vec3& point) {
 }
 
 double SmallestError(const DepthFit& fit, const PointGroup& group) {
-  double smallest = DepthError(fit, group[0]);
+  double smallest = std::numeric_limits<double>::infinity();
   for (const Vec3& point : group) {
     smallest = std::min(smallest, DepthError(fit, point));
   }
@@ -164,7 +164,6 @@ double ScoreGroups(const DepthFit& fit, const std::vector<PointGroup>& groups,
   double score = 0;
   for (const PointGroup& group : groups) {
     const double error = SmallestError(fit, group) / max_error;
-    // Not of NaN.
     score += error <= 1 ? 1 - error * error : 0;
   }
   return score;

@@ -43,8 +43,10 @@ std::set<int32_t> RegionsAround(const Anchor& pixel, int reach,
     for (int col = std::max(pixel.col - reach, 0);
          col <= std::min(pixel.col + reach, labels.width() - 1); ++col) {
       const int32_t label = labels.At(row, col);
+      const int dy = row - pixel.row;
+      const int dx = col - pixel.col;
       if (label != EvenRegions::kNone && label != last &&
-          std::hypot(row - pixel.row, col - pixel.col) <= reach) {
+          dx * dx + dy * dy <= reach * reach) {
         found.insert(label);
         last = label;
       }
@@ -55,13 +57,17 @@ std::set<int32_t> RegionsAround(const Anchor& pixel, int reach,
 
 // The anchors in and around each region; those between two are of both.
 std::vector<RegionAnchors> GatherAnchors(
-    const std::vector<SurfaceAnchor>& anchors, const EvenRegions& regions) {
+    const Control& control, const std::vector<SurfaceAnchor>& anchors,
+    const EvenRegions& regions) {
   const Map<int32_t>& labels = regions.labels;
   const int size = AnchorSpacing(labels.width(), labels.height());
   // By label, and by square.
   std::vector<std::map<std::pair<int, int>, PointGroup>> groups(regions.count +
                                                                 1);
   for (const auto& [pixel, point] : anchors) {
+    if (control.IsStopped()) {
+      break;
+    }
     // FindAnchors leaves out the image's border.
     const std::pair<int, int> square(std::max(pixel.row - 1, 0) / size,
                                      std::max(pixel.col - 1, 0) / size);
@@ -179,8 +185,9 @@ class RegionCompleter {
         origin_(*origin),
         planes_(regions.count + 1) {}
 
-  void Fit(const std::vector<RegionAnchors>& anchors) {
-    for (size_t label = 1; label < planes_.size(); ++label) {
+  void Fit(const Control& control, const std::vector<RegionAnchors>& anchors) {
+    for (size_t label = 1; label < planes_.size() && !control.IsStopped();
+         ++label) {
       planes_[label] =
           FindPlanes(anchors[label], options_.tapa.relative_plane_distance,
                      options_.seed + label * 0x9E3779B97F4A7C15u);
@@ -270,6 +277,9 @@ void CompleteRegions(const Options& options, const Problem& problem,
   const Map<float> before = *depth;
   const std::vector<SurfaceAnchor> anchors = FindSurfaceAnchors(
       options, problem, control, camera, before, textureness);
+  if (control.IsStopped()) {
+    return;
+  }
   const Map<float> steps = MeasureSteps(color);
   const Map<float> unmasked = WithoutMasked(problem, textureness);
   for (const float max_step : kSteps) {
@@ -279,7 +289,7 @@ void CompleteRegions(const Options& options, const Problem& problem,
     const EvenRegions regions = FindEvenRegions(steps, unmasked, max_step);
     RegionCompleter completer(options, camera, unmasked, regions, before, depth,
                               normal, origin);
-    completer.Fit(GatherAnchors(anchors, regions));
+    completer.Fit(control, GatherAnchors(control, anchors, regions));
     for (int row = 0; row < depth->height() && !control.IsStopped(); ++row) {
       completer.CompleteRow(row);
     }

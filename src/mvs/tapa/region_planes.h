@@ -17,19 +17,20 @@ namespace tapa {
 // what surrounds them. An evenly coloured region is likely flat (TAPA-MVS,
 // section 1), but nothing in it says where it is: its estimates are what they
 // propagated from, on a ceiling often the wall below, and all views agree upon
-// that. The anchors (triangle_planes.h) in it and around it, up to the side of
-// an anchor's square away, say more. The plane through most of them (RANSAC,
-// errors of depth up to relative_plane_distance) is the region's, if at least 8
-// and a share of 0.35 lie on it.
+// that. The anchors of all views (surface_anchors.h) in it and around it, up to
+// the side of an anchor's square away, say more. Each square of the view counts
+// once: a plane is on it if one of its anchors lies on the plane, by errors of
+// depth up to relative_plane_distance. The region's plane is on most of them
+// (RANSAC), at least 8 and half of all.
 //
 // Pixels of the region with a textureness below 0.5 whose own depth is further
-// away from the plane than twice relative_plane_distance, or that have none,
-// become part of it, as far as the plane is known as well as an anchor is:
-// anchors along a line say nothing of what is beside it. But where there is no
+// away from the plane than relative_plane_distance, or that have none, become
+// part of it, as far as the plane is known as well as an anchor is: anchors
+// along a line say nothing of what is beside it. But where there is no
 // edge between two surfaces a region holds both: pixels stay that lie on the
-// plane through most of the anchors that the first one misses, at least 8,
-// where that one is known, if a tenth of the region's pixels lay on it before
-// this step. The plane may leave the problem's range of depths.
+// plane of most of the anchors that the first one misses, in at least 8
+// squares, where that one is known, if a tenth of the region's pixels lay on it
+// before this step. The plane may leave the problem's range of depths.
 //
 // Regions are tried that end at steps of 6 grey levels, then those that end at
 // 3: what is found in the smaller ones has the last word.

@@ -8,6 +8,7 @@
 #include "src/mvs/camera_table.h"
 #include "src/mvs/sweep/geometric_cost.h"
 #include "src/mvs/sweep/view_prior.h"
+#include "src/mvs/tapa/nearest_pixel.h"
 
 namespace tapa {
 namespace {
@@ -48,8 +49,9 @@ class Witness {
       const float depth = depths.At(row, col);
       int ref_row, ref_col;
       if (!IsDepth(depth) ||
-          !FindPixel(0, ProjectToSource(views_, 0, row, col, depth), &ref_row,
-                     &ref_col) ||
+          !FindNearestPixel(ProjectToSource(views_, 0, row, col, depth),
+                            known.width(), known.height(), &ref_row,
+                            &ref_col) ||
           IsDepth(known.At(ref_row, ref_col))) {
         continue;
       }
@@ -75,30 +77,17 @@ class Witness {
     return num_views >= min_num_views;
   }
 
-  // The pixel of another view at a place; false if it is outside.
-  bool FindPixel(int m, const Projection& seen, int* other_row,
-                 int* other_col) const {
-    const Map<float>& other = *problem_.sources[m].depth;
-    if (!(seen.col > -0.5f && seen.row > -0.5f &&
-          seen.col < other.width() - 0.5f &&
-          seen.row < other.height() - 0.5f)) {
-      return false;
-    }
-    *other_col = static_cast<int>(seen.col + 0.5f);
-    *other_row = static_cast<int>(seen.row + 0.5f);
-    return true;
-  }
-
   // The filter's conditions but that on normals, which source views do not
   // have.
   bool Agrees(int m, int row, int col, float depth) const {
     const Projection seen = ProjectToSource(views_, m, row, col, depth);
+    const Map<float>& other = *problem_.sources[m].depth;
     int other_row, other_col;
-    if (!FindPixel(m, seen, &other_row, &other_col)) {
+    if (!FindNearestPixel(seen, other.width(), other.height(), &other_row,
+                          &other_col)) {
       return false;
     }
-    const float other_depth =
-        problem_.sources[m].depth->At(other_row, other_col);
+    const float other_depth = other.At(other_row, other_col);
     const Vec3 point = depth * table_.reference().Ray(row, col);
     return ReprojectionError(views_, m, row, col, seen, other_depth,
                              max_error_ + 1) <= max_error_ &&

@@ -3,6 +3,7 @@
 #include "src/base/depth.h"
 #include "src/mvs/camera_table.h"
 #include "src/mvs/sweep/geometric_cost.h"
+#include "src/mvs/tapa/nearest_pixel.h"
 #include "src/mvs/tapa/textureness.h"
 
 namespace tapa {
@@ -17,29 +18,27 @@ std::vector<Anchor> FindAnchorsOf(const TapaOptions& options,
 
 // Adds those of source view m that the reference view sees.
 void AddSourceAnchors(const Options& options, const Problem& problem,
-                      const CameraTable& table, int m, const Map<float>& depth,
+                      const RefCamera& camera, const SourceCameras& views,
+                      int m, const Map<float>& depth,
                       std::vector<SurfaceAnchor>* anchors) {
   const View& view = problem.sources[m];
-  const SourceCameras views = table.sources();
-  const float nearest =
+  const float nearest_share =
       static_cast<float>(1 - options.tapa.relative_plane_distance);
   for (const Anchor& anchor : FindAnchorsOf(options.tapa, view)) {
     const Vec3 p = TransferPoint(views.B, views.g, m, anchor.col, anchor.row,
                                  view.depth->At(anchor.row, anchor.col));
-    const float x = p.x / p.z;
-    const float y = p.y / p.z;
-    if (!(p.z > 0 && x >= -0.5f && y >= -0.5f && x < depth.width() - 0.5f &&
-          y < depth.height() - 0.5f)) {
+    const Projection place = {p.x / p.z, p.y / p.z};
+    Anchor pixel;
+    if (!(p.z > 0) || !FindNearestPixel(place, depth.width(), depth.height(),
+                                        &pixel.row, &pixel.col)) {
       continue;
     }
-    const Anchor pixel = {static_cast<int>(y + 0.5f),
-                          static_cast<int>(x + 0.5f)};
     const size_t index =
         static_cast<size_t>(pixel.row) * depth.width() + pixel.col;
     const float own = depth.data()[index];
-    const bool is_hidden = IsDepth(own) && own < nearest * p.z;
+    const bool is_hidden = IsDepth(own) && own < nearest_share * p.z;
     if (!problem.IsMasked(index) && !is_hidden) {
-      anchors->push_back({pixel, p.z * table.reference().Ray(y, x)});
+      anchors->push_back({pixel, p.z * camera.Ray(place.row, place.col)});
     }
   }
 }
@@ -58,13 +57,12 @@ std::vector<SurfaceAnchor> FindSurfaceAnchors(const Options& options,
     anchors.push_back({anchor, depth.At(anchor.row, anchor.col) *
                                    camera.Ray(anchor.row, anchor.col)});
   }
-  if (options.geom_consistency) {
-    const CameraTable table(problem);
-    for (size_t m = 0; m < problem.sources.size(); ++m) {
-      if (!control.IsStopped() && problem.sources[m].depth != nullptr) {
-        AddSourceAnchors(options, problem, table, static_cast<int>(m), depth,
-                         &anchors);
-      }
+  const CameraTable table(problem);
+  for (size_t m = 0; m < problem.sources.size(); ++m) {
+    if (options.geom_consistency && problem.sources[m].depth != nullptr &&
+        !control.IsStopped()) {
+      AddSourceAnchors(options, problem, camera, table.sources(),
+                       static_cast<int>(m), depth, &anchors);
     }
   }
   return anchors;

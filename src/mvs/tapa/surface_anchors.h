@@ -21,12 +21,13 @@ struct SurfaceAnchor {
   Vec3 point;
 };
 
-// The anchors (triangle_planes.h) of the reference view, whose estimates are
-// `depth` and `textureness`, and with options.geom_consistency those of the
-// source views that it sees: its pixel is not masked and has no estimate that
-// is nearer by more than tapa_relative_plane_distance. Source views without a
-// depth map have none. Ends early, with a part of them, once control.stopped()
-// says so.
+// The anchors (triangle_planes.h) of the reference view and, if
+// options.geom_consistency is set, those of the source views that it sees, in
+// the order of the sources. camera, depth (0: none) and textureness are the
+// reference view's. It sees a point unless the pixel is masked or has a depth
+// that is less than the point's by more than tapa_relative_plane_distance.
+// Source views without a depth map have no anchors. Ends early, with a part of
+// them, once control.stopped() says so.
 std::vector<SurfaceAnchor> FindSurfaceAnchors(const Options& options,
                                               const Problem& problem,
                                               const Control& control,

@@ -5,6 +5,7 @@
 #include "src/base/depth.h"
 #include "src/mvs/camera_table.h"
 #include "src/mvs/sweep/geometric_cost.h"
+#include "src/mvs/tapa/nearest_pixel.h"
 #include "src/mvs/tapa/textureness.h"
 #include "src/mvs/tapa/triangle_planes.h"
 
@@ -39,14 +40,11 @@ class Voter {
       return 0;
     }
     const Vec3 p = TransferPoint(views_.A, views_.b, m_, col, row, depth);
-    const float x = p.x / p.z;
-    const float y = p.y / p.z;
-    if (!(p.z > 0 && x >= -0.5f && y >= -0.5f && x < depth_.width() - 0.5f &&
-          y < depth_.height() - 0.5f)) {
+    int own_row, own_col;
+    if (!(p.z > 0) || !FindNearestPixel({p.x / p.z, p.y / p.z}, depth_.width(),
+                                        depth_.height(), &own_row, &own_col)) {
       return 0;
     }
-    const int own_col = static_cast<int>(x + 0.5f);
-    const int own_row = static_cast<int>(y + 0.5f);
     const float estimate = depth_.At(own_row, own_col) / p.z - 1;
     const float triangle =
         triangles_.At(camera_, own_row, own_col).depth / p.z - 1;
