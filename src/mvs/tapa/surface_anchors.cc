@@ -4,17 +4,9 @@
 #include "src/mvs/camera_table.h"
 #include "src/mvs/sweep/geometric_cost.h"
 #include "src/mvs/tapa/nearest_pixel.h"
-#include "src/mvs/tapa/textureness.h"
 
 namespace tapa {
 namespace {
-
-std::vector<Anchor> FindAnchorsOf(const TapaOptions& options,
-                                  const View& view) {
-  return FindAnchors(options, *view.depth,
-                     ComputeTextureness(*view.image, TexturenessOf(options)),
-                     kClearTexture);
-}
 
 // Adds those of source view m that the reference view sees.
 void AddSourceAnchors(const Options& options, const Problem& problem,
@@ -24,7 +16,7 @@ void AddSourceAnchors(const Options& options, const Problem& problem,
   const View& view = problem.sources[m];
   const float nearest_share =
       static_cast<float>(1 - options.tapa.relative_plane_distance);
-  for (const Anchor& anchor : FindAnchorsOf(options.tapa, view)) {
+  for (const Anchor& anchor : FindAnchors(options.tapa, view, kClearTexture)) {
     const Vec3 p = TransferPoint(views.B, views.g, m, anchor.col, anchor.row,
                                  view.depth->At(anchor.row, anchor.col));
     const Projection place = {p.x / p.z, p.y / p.z};

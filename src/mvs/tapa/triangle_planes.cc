@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "src/base/depth.h"
+#include "src/mvs/tapa/textureness.h"
 
 namespace tapa {
 namespace {
@@ -118,6 +119,13 @@ std::vector<Anchor> FindAnchors(const TapaOptions& options,
     }
   }
   return anchors;
+}
+
+std::vector<Anchor> FindAnchors(const TapaOptions& options, const View& view,
+                                double min_textureness) {
+  return FindAnchors(options, *view.depth,
+                     ComputeTextureness(*view.image, TexturenessOf(options)),
+                     min_textureness);
 }
 
 TrianglePlanes TriangulateAnchors(const RefCamera& camera,

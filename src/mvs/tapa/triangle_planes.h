@@ -59,6 +59,10 @@ std::vector<Anchor> FindAnchors(const TapaOptions& options,
                                 const Map<float>& textureness,
                                 double min_textureness);
 
+// The same of a view that has a depth map.
+std::vector<Anchor> FindAnchors(const TapaOptions& options, const View& view,
+                                double min_textureness);
+
 // The planes of the Delaunay triangles between anchors, in the frame of the
 // camera. Triangles seen edge-on have none.
 TrianglePlanes TriangulateAnchors(const RefCamera& camera,

@@ -6,7 +6,6 @@
 #include "src/mvs/camera_table.h"
 #include "src/mvs/sweep/geometric_cost.h"
 #include "src/mvs/tapa/nearest_pixel.h"
-#include "src/mvs/tapa/textureness.h"
 #include "src/mvs/tapa/triangle_planes.h"
 
 namespace tapa {
@@ -26,12 +25,9 @@ class Voter {
         views_(views),
         m_(m),
         tolerance_(static_cast<float>(options.tapa.relative_plane_distance)) {
-    const Map<float> textureness =
-        ComputeTextureness(*view.image, TexturenessOf(options.tapa));
-    triangles_ =
-        TriangulateAnchors(camera_, depth_,
-                           FindAnchors(options.tapa, depth_, textureness,
-                                       options.tapa.completion_textureness));
+    triangles_ = TriangulateAnchors(
+        camera_, depth_,
+        FindAnchors(options.tapa, view, options.tapa.completion_textureness));
   }
 
   // Of this view for the point at a depth of a reference pixel.
