@@ -58,6 +58,7 @@ for _name, _label, _option, _value in (
         ("triangles", "without triangles", "completion_triangles", 0),
         ("silhouettes", "without silhouettes", "completion_silhouettes", 0),
         ("regions", "without regions", "completion_regions", 0),
+        ("consensus", "without consensus", "completion_consensus", 0),
         ("agreement", "planes whatever lies on them", "completion_agreement", 0),
         ("radius", "agreement of whole superpixels", "completion_radius", 1),
         ("texture", "planes for nothing that stayed", "completion_textureness", 0),

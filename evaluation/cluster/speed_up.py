@@ -14,7 +14,7 @@ import sys
 from .. import command_line, files
 from ..processes import Failure
 
-_VIEW = re.compile(r"\s*[\d.]+ %\s+\S+ to go  ((?:level \d+ )?(?:photometric|geometric)) "
+_VIEW = re.compile(r"\s*[\d.]+ %\s+\S+ to go  ((?:level \d+ )?(?:photometric|draft|geometric)) "
                    r"(\d{1,12})/\d+ .+: [\d.]+ megapixels in (\d{1,12}(?:\.\d+)?) s")
 _ELAPSED = re.compile(r"Elapsed time: (\d{1,12}(?:\.\d+)?) \[minutes\]")
 

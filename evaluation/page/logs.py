@@ -7,7 +7,7 @@ from typing import NamedTuple
 from .. import files
 
 _ELAPSED = re.compile(r"Elapsed time: (\d{1,12}(?:\.\d+)?) \[minutes\]")
-_VIEW = re.compile(r"\s*[\d.]+ %\s+\S+ to go  (?:level \d+ )?(?:photometric|geometric) "
+_VIEW = re.compile(r"\s*[\d.]+ %\s+\S+ to go  (?:level \d+ )?(?:photometric|draft|geometric) "
                    r"\d+/\d+ (.+): [\d.]+ megapixels in (\d{1,12}(?:\.\d+)?) s")
 
 _PLAIN = {"Finding good initial image pair": "Camera poses"}  # Of what a heading begins.

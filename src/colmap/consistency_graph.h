@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "mvs/consistency_graph.h"
 #include "src/mvs/problem.h"
 
 namespace tapa {
@@ -14,6 +15,12 @@ namespace tapa {
 // Empty if the estimate was not filtered.
 std::vector<int32_t> ConsistencyGraph(const Estimate& estimate,
                                       const std::vector<int>& source_indices);
+
+// What a graph lists of the pixels whose depth is still what it was: other
+// estimates are not those that source views supported.
+std::vector<int32_t> KeepUnchanged(const colmap::mvs::ConsistencyGraph& graph,
+                                   const Map<float>& before,
+                                   const Map<float>& after);
 
 }  // namespace tapa
 

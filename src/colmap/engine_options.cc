@@ -55,6 +55,12 @@ Pass FinalPass(const PatchMatchOptions& options) {
   return options.geom_consistency ? Pass::kGeometric : Pass::kPhotometric;
 }
 
+bool HasDrafts(const PatchMatchOptions& options) {
+  return options.geom_consistency && options.tapa.enabled &&
+         options.tapa.refinement && options.tapa.completion &&
+         options.tapa.completion_consensus;
+}
+
 namespace {
 
 void TakeColmapDefaults(PatchMatchOptions* options) {
@@ -88,8 +94,10 @@ PatchMatchOptions PassOptions(PatchMatchOptions options, Pass pass, int level,
   }
   options.num_levels = num_levels;
   const bool is_coarsest = level + 1 == num_levels;
-  const bool is_final = level == 0 && pass == FinalPass(options);
-  if (pass == Pass::kGeometric) {
+  const bool is_geometric = pass != Pass::kPhotometric;
+  const bool is_final =
+      level == 0 && (pass == FinalPass(options) || pass == Pass::kDraft);
+  if (is_geometric) {
     options.num_iterations =
         std::min(options.num_iterations, options.num_geom_iterations);
   } else if (!is_coarsest) {
@@ -99,7 +107,7 @@ PatchMatchOptions PassOptions(PatchMatchOptions options, Pass pass, int level,
   if (!is_coarsest) {
     options.first_perturbation =
         std::min(options.first_perturbation, options.fine_perturbation);
-  } else if (pass == Pass::kGeometric) {
+  } else if (is_geometric) {
     options.first_perturbation =
         std::min(options.first_perturbation, options.geom_perturbation);
   }
@@ -107,7 +115,7 @@ PatchMatchOptions PassOptions(PatchMatchOptions options, Pass pass, int level,
     options.filter = false;
     options.tapa.refinement = false;
   }
-  options.geom_consistency = pass == Pass::kGeometric;
+  options.geom_consistency = is_geometric;
   return options;
 }
 
@@ -118,7 +126,8 @@ uint64_t ViewSeed(uint64_t seed, const std::string& image_name, Pass pass,
   for (int shift = 0; shift < 64; shift += 8) {
     add(static_cast<uint8_t>(seed >> shift));
   }
-  add(static_cast<uint8_t>(2 * level + static_cast<int>(pass)));
+  // Drafts are what the geometric pass makes without consensus.
+  add(static_cast<uint8_t>(2 * level + (pass == Pass::kPhotometric ? 0 : 1)));
   hash.Add(image_name.data(), image_name.size());
   return hash.value();
 }

@@ -13,6 +13,9 @@ namespace tapa {
 // The pass whose maps are the result.
 Pass FinalPass(const colmap::mvs::PatchMatchOptions& options);
 
+// Whether its maps are made from drafts.
+bool HasDrafts(const colmap::mvs::PatchMatchOptions& options);
+
 // Throws Failure that names the option if one is out of range.
 void CheckOptions(const colmap::mvs::PatchMatchOptions& options);
 
@@ -24,9 +27,9 @@ Options EngineOptions(const colmap::mvs::PatchMatchOptions& options);
 int NumLevels(const colmap::mvs::PatchMatchOptions& options, int longest_side);
 
 // What is in force in a pass at a level: it has its own number of iterations
-// and size of random changes. Before the final pass all pixels keep their
-// estimates, so that it neither filters nor, which takes the filter's place,
-// refines.
+// and size of random changes. Before the final pass, or the drafts that it
+// takes, all pixels keep their estimates, so that it neither filters nor, which
+// takes the filter's place, refines.
 colmap::mvs::PatchMatchOptions PassOptions(
     colmap::mvs::PatchMatchOptions options, Pass pass, int level = 0,
     int num_levels = 1);

@@ -161,8 +161,9 @@ void CheckInputs(const StereoPlan& plan, const PassPlan& pass,
   }
 }
 
-// Whether the maps of a coarse level can be gone on with: another run, with
-// other options or photographs, may have left them when it was stopped.
+// Whether drafts or the maps of a coarse level can be gone on with: another
+// run, with other options or photographs, may have left them when it was
+// stopped.
 bool IsUsable(const StereoPlan& plan, const PassPlan& pass,
               const ViewsRecord& inputs) {
   try {
@@ -236,7 +237,7 @@ ViewsRecord CurrentInputs(const StereoPlan& plan,
 
 void CheckRecords(const ViewsRecord& inputs, StereoPlan* plan) {
   for (const PassPlan& pass : plan->passes) {
-    if (pass.has_maps && pass.level == 0) {
+    if (pass.has_maps && IsResult(pass.pass, pass.level)) {
       CheckRecord(*plan, pass);
       CheckInputs(*plan, pass, inputs);
     } else if (pass.has_maps && !IsUsable(*plan, pass, inputs)) {
@@ -245,7 +246,7 @@ void CheckRecords(const ViewsRecord& inputs, StereoPlan* plan) {
   }
   if (plan->drops_levels) {
     for (PassPlan& pass : plan->passes) {
-      pass.has_maps = pass.has_maps && pass.level == 0;
+      pass.has_maps = pass.has_maps && IsResult(pass.pass, pass.level);
     }
   }
 }

@@ -19,8 +19,8 @@ ViewsRecord CurrentInputs(const StereoPlan& plan,
                           const colmap::mvs::PatchMatchOptions& options);
 
 // Compares the maps that are there with what this run would make, from
-// `inputs`. Those of coarse levels are nobody's result: all go if one does not
-// fit. Throws Failure if those of full size do not.
+// `inputs`. Those of coarse levels and drafts are nobody's result: all go if
+// one does not fit. Throws Failure if those of full size do not.
 void CheckRecords(const ViewsRecord& inputs, StereoPlan* plan);
 
 // Looks at the maps that are there already (PassPlan::is_done). Throws Failure

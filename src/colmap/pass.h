@@ -3,13 +3,28 @@
 
 namespace tapa {
 
-// The two passes of stereo: the geometric one starts from the result of the
-// photometric one.
-enum class Pass { kPhotometric, kGeometric };
+// The kinds of maps, each made by a pass over all views from those of the kind
+// before. With TAPA's consensus (src/mvs/tapa/consensus.h) what the geometric
+// pass of full size makes is a draft, and views judge each other's drafts to
+// make the geometric maps.
+enum class Pass { kPhotometric, kDraft, kGeometric };
+
+// Whether maps of a pass at a level (src/mvs/levels.h) are there for the user
+// when the run is over.
+inline bool IsResult(Pass pass, int level) {
+  return level == 0 && pass != Pass::kDraft;
+}
 
 // As in the names of files.
 inline const char* PassName(Pass pass) {
-  return pass == Pass::kGeometric ? "geometric" : "photometric";
+  switch (pass) {
+    case Pass::kPhotometric:
+      return "photometric";
+    case Pass::kDraft:
+      return "draft";
+    default:
+      return "geometric";
+  }
 }
 
 }  // namespace tapa

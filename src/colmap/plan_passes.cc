@@ -25,6 +25,17 @@ bool HasMaps(const StereoPlan& plan, Pass pass, int level) {
   return false;
 }
 
+std::vector<Pass> PassesAt(int level, const PatchMatchOptions& options) {
+  std::vector<Pass> passes = {Pass::kPhotometric};
+  if (level == 0 && HasDrafts(options)) {
+    passes.push_back(Pass::kDraft);
+  }
+  if (options.geom_consistency) {
+    passes.push_back(Pass::kGeometric);
+  }
+  return passes;
+}
+
 OptionValues RecordOf(PatchMatchOptions options,
                       const std::vector<SceneView>& views) {
   // A limit that no photograph reaches is none.
@@ -56,10 +67,7 @@ std::vector<PassPlan> PlanPasses(const PatchMatchOptions& options,
   const int num_levels = static_cast<int>(plan.views.size());
   std::string passes_before;
   for (int level = num_levels - 1; level >= 0; --level) {
-    for (const Pass pass : {Pass::kPhotometric, Pass::kGeometric}) {
-      if (pass > FinalPass(options)) {
-        continue;
-      }
+    for (const Pass pass : PassesAt(level, options)) {
       PassPlan to;
       to.pass = pass;
       to.level = level;
@@ -71,8 +79,11 @@ std::vector<PassPlan> PlanPasses(const PatchMatchOptions& options,
       }
       passes_before += (to.has_start ? ", " : "") + DescribePass(to);
       to.has_maps = HasMaps(plan, pass, level);
-      // No pass before the final one filters.
-      const bool is_final = level == 0 && pass == FinalPass(options);
+      to.takes_drafts =
+          level == 0 && pass == Pass::kGeometric && HasDrafts(options);
+      // No pass before the final one, or its drafts, filters.
+      const bool is_final =
+          level == 0 && (pass == FinalPass(options) || pass == Pass::kDraft);
       to.writes_graphs = is_final && options.write_consistency_graph;
       to.writes_pictures =
           is_final && options.tapa.enabled && !options.tapa_debug.empty();

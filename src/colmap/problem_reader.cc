@@ -32,6 +32,9 @@ ProblemReader::ProblemReader(const StereoPlan& plan)
             return ReadPhoto(plan_.View(key % level_size, key / level_size));
           }),
       depth_maps_(CacheBytes(plan) * 4 / 5, [this](int key) {
+        if (key >= DraftKey(0)) {
+          return ReadDraft(key - DraftKey(0));
+        }
         const int level_size = Key(0, 1);
         return ReadDepth(key % level_size, key / level_size,
                          Pass::kPhotometric);
@@ -39,6 +42,23 @@ ProblemReader::ProblemReader(const StereoPlan& plan)
 
 int ProblemReader::Key(int view, int level) const {
   return level * static_cast<int>(plan_.views[0].size()) + view;
+}
+
+int ProblemReader::DraftKey(int view) const {
+  return Key(view, static_cast<int>(plan_.views.size()));
+}
+
+bool ProblemReader::HasDraft(int view) const {
+  return colmap::ExistsPath(
+             plan_.MapPath(MapKind::kDepth, view, Pass::kDraft, 0)) ||
+         colmap::ExistsPath(
+             plan_.MapPath(MapKind::kDepth, view, Pass::kGeometric, 0));
+}
+
+Map<float> ProblemReader::ReadDraft(int view) const {
+  const bool is_gone = !colmap::ExistsPath(
+      plan_.MapPath(MapKind::kDepth, view, Pass::kDraft, 0));
+  return ReadDepth(view, 0, is_gone ? Pass::kGeometric : Pass::kDraft);
 }
 
 Map<float> ProblemReader::ReadDepth(int view, int level, Pass pass) const {
@@ -64,7 +84,7 @@ Map<Vec3> ProblemReader::ReadNormal(int view, int level, Pass pass) const {
 // the last pass of the level before.
 DepthNormalMaps ProblemReader::ReadStart(const PassPlan& pass,
                                          const View& reference, int view) {
-  if (pass.pass == Pass::kGeometric) {
+  if (pass.pass != Pass::kPhotometric) {
     return {*depth_maps_.Get(Key(view, pass.level)),
             ReadNormal(view, pass.level, Pass::kPhotometric)};
   }
@@ -112,7 +132,7 @@ std::unique_ptr<ProblemInput> ProblemReader::Read(
   };
 
   const SceneView& reference = plan_.View(problem.reference, pass.level);
-  const bool is_geometric = pass.pass == Pass::kGeometric;
+  const bool is_geometric = pass.pass != Pass::kPhotometric;
   Problem& to = input->problem;
   to.reference = to_view(problem.reference);
   for (const int source : problem.sources) {
@@ -147,6 +167,32 @@ std::unique_ptr<ProblemInput> ProblemReader::Read(
                                               : reference.depth_max);
   // The engine takes no 0, by which users mean that there is no lower end.
   to.depth_min = std::max(to.depth_min, kSmallestDepth * to.depth_max);
+  return input;
+}
+
+std::unique_ptr<ProblemInput> ProblemReader::ReadDrafts(
+    const ViewIndices& problem, const PassPlan& pass,
+    const std::function<bool()>& stopped) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  auto input = std::make_unique<ProblemInput>();
+  const SceneView& reference = plan_.View(problem.reference, 0);
+  Problem& to = input->problem;
+  to.reference.camera = reference.camera;
+  to.depth = ReadDepth(problem.reference, 0, Pass::kDraft);
+  to.normal = ReadNormal(problem.reference, 0, Pass::kDraft);
+  to.mask = ReadMask(pass.options.mask_path, reference);
+  for (const int source : problem.sources) {
+    if (stopped()) {
+      return nullptr;
+    }
+    View view;
+    view.camera = plan_.View(source, 0).camera;
+    if (HasDraft(source)) {
+      input->depth_maps.push_back(depth_maps_.Get(DraftKey(source)));
+      view.depth = input->depth_maps.back().get();
+    }
+    to.sources.push_back(view);
+  }
   return input;
 }
 

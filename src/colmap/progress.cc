@@ -80,7 +80,7 @@ void Progress::Tell(const View& view, bool is_finished) const {
     ProgressNews news;
     news.share = ShareDone();
     news.text = Text(view) + (view.of.level == 0 ? ", full size" : "");
-    if (is_finished && view.of.level == 0) {
+    if (is_finished && IsResult(view.of.pass, view.of.level)) {
       news.finished_view = view.of.name;
       news.finished_pass = view.of.pass;
     }

@@ -16,7 +16,7 @@ struct ProgressNews {
   double share = 0;
   // For the user: time to go, and level, pass and view that are computed.
   std::string text;
-  // The view of which a pass has just written maps of full size; empty: none.
+  // The view of which a pass has just written maps that stay; empty: none.
   std::string finished_view;
   Pass finished_pass = Pass::kPhotometric;
 };

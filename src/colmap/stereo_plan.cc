@@ -56,9 +56,9 @@ std::map<int, FittedPrior> PriorsOf(const PatchMatchOptions& options,
   return FitPriors(options.prior_path, model, plan.views[0], views);
 }
 
-// Maps of full size are what the user gets. A coarser one is needed for a view
-// that starts from it, and for one that has that view as a source in a
-// geometric pass.
+// Maps of full size are what the user gets. A coarser one, or a draft, is
+// needed for a view that starts from it, and for one that has that view as a
+// source in a geometric pass; in place of a draft its geometric map will do.
 void FindNeeded(StereoPlan* plan) {
   const size_t num_problems = plan->problems.size();
   std::vector<int> problem_of(plan->views[0].size(), -1);
@@ -67,7 +67,8 @@ void FindNeeded(StereoPlan* plan) {
   }
   for (PassPlan& pass : plan->passes) {
     for (size_t i = 0; i < num_problems; ++i) {
-      pass.is_needed.push_back(pass.level == 0 && !plan->IsHelper(i));
+      pass.is_needed.push_back(IsResult(pass.pass, pass.level) &&
+                               !plan->IsHelper(i));
     }
   }
   for (size_t p = plan->passes.size() - 1; p > 0; --p) {
@@ -79,8 +80,11 @@ void FindNeeded(StereoPlan* plan) {
       }
       before[i] = true;
       for (const int source : plan->problems[i].sources) {
-        if (pass.pass == Pass::kGeometric && problem_of[source] >= 0) {
-          before[problem_of[source]] = true;
+        const int other = problem_of[source];
+        if (pass.pass != Pass::kPhotometric && other >= 0 &&
+            !(pass.takes_drafts &&
+              (plan->IsHelper(other) || pass.is_done[other]))) {
+          before[other] = true;
         }
       }
     }

@@ -27,6 +27,8 @@ struct PassPlan {
   colmap::mvs::PatchMatchOptions options;
   // Whether it starts from the maps of the pass before.
   bool has_start = false;
+  // Whether it lets views judge each other's drafts rather than estimate.
+  bool takes_drafts = false;
   // For each of the plan's problems, whether its maps are there already, and
   // whether anything needs them.
   std::vector<bool> is_done;
@@ -64,7 +66,8 @@ struct StereoPlan {
   std::vector<PassPlan> passes;
   // What this program does of them.
   RunPart part;
-  // Whether maps of coarse levels are there that this run cannot go on with.
+  // Whether maps of coarse levels or drafts are there that this run cannot go
+  // on with.
   bool drops_levels = false;
 
   bool IsHelper(size_t problem) const { return problem >= num_results; }

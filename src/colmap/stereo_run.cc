@@ -18,6 +18,7 @@
 #include "src/colmap/workers.h"
 #include "src/mvs/device_error.h"
 #include "src/mvs/estimate_depth.h"
+#include "src/mvs/tapa/consensus.h"
 #include "src/mvs/tapa/stages.h"
 #include "util/misc.h"
 
@@ -30,7 +31,9 @@ double Megapixels(const SceneView& view) {
 
 // What a view takes, in megapixels times iterations.
 double Work(const PassPlan& pass, const SceneView& view) {
-  return Megapixels(view) * pass.options.num_iterations;
+  constexpr double kJudging = 0.1;
+  return Megapixels(view) *
+         (pass.takes_drafts ? kJudging : pass.options.num_iterations);
 }
 
 // What is left to compute.
@@ -63,6 +66,13 @@ void DropOutside(const PassPlan& pass, Estimate* estimate) {
       std::fill_n(estimate->consistent.begin() + i * mask_bytes, mask_bytes, 0);
     }
   }
+}
+
+[[noreturn]] void FailForMemory(const SceneView& view, size_t bytes) {
+  throw Failure("View " + view.name + " needs about " +
+                std::to_string(bytes >> 20) +
+                " MB of memory; lower --PatchMatchStereo.max_image_size or "
+                "cache_size");
 }
 
 // Of the pictures of a view, named as its photograph.
@@ -272,6 +282,9 @@ bool StereoRun::ComputeView(const Task& task, int device) {
 }
 
 bool StereoRun::ComputeViewOn(int device, const Task& task) {
+  if (task.pass.takes_drafts) {
+    return JudgeView(task);
+  }
   const auto stopped = [this] { return Stopped(); };
   Options options = EngineOptions(task.pass.options);
   options.seed = ViewSeed(task.pass.options.seed, task.view.name,
@@ -300,48 +313,96 @@ bool StereoRun::ComputeViewOn(int device, const Task& task) {
     throw Failure("View " + task.view.name +
                   " cannot be computed: " + error.what());
   } catch (const std::bad_alloc&) {
-    throw Failure("View " + task.view.name + " needs about " +
-                  std::to_string(memory >> 20) +
-                  " MB of memory; lower --PatchMatchStereo.max_image_size or "
-                  "cache_size");
+    FailForMemory(task.view, memory);
   }
   if (!estimate) {
     return false;
   }
   DropOutside(task.pass, &*estimate);
-  return WriteView(task, *estimate, *input, record);
-}
-
-bool StereoRun::WriteView(const Task& task, const Estimate& estimate,
-                          const ProblemInput& input, const TapaRecord& record) {
-  const auto path = [&](MapKind kind) {
-    return plan_.MapPath(kind, task.problem.reference, task.pass.pass,
-                         task.pass.level);
-  };
   // Before the maps, so that a run that is cut off here draws them again.
   if (task.pass.writes_pictures) {
     TapaView view;
     view.title = task.view.name;
-    view.photograph = &*input.color;
+    view.photograph = &*input->color;
     view.record = &record;
-    view.depth = &estimate.depth;
-    view.normal = &estimate.normal;
+    view.depth = &estimate->depth;
+    view.normal = &estimate->normal;
     view.min_textureness =
         static_cast<float>(task.pass.options.tapa.min_textureness);
-    const std::lock_guard<std::mutex> lock(mutex_);
-    if (!WriteTapaPictures(view, PictureFolder(task.pass, task.view),
-                           [this] { return Stopped(); })) {
+    RemoveTapaPictures(PictureFolder(task.pass, task.view));
+    if (!WritePictures(task, [&view] { return DrawTapaPictures(view); })) {
       return false;
     }
   }
+  WriteView(task, *estimate, ConsistencyGraph(*estimate, task.problem.sources));
+  return true;
+}
+
+bool StereoRun::JudgeView(const Task& task) {
+  const auto stopped = [this] { return Stopped(); };
+  const std::unique_ptr<ProblemInput> input =
+      reader_.ReadDrafts(task.problem, task.pass, stopped);
+  if (input == nullptr) {
+    return false;
+  }
+  const Options options = EngineOptions(task.pass.options);
+  Control control;
+  control.progress = [&](double share) {
+    progress_.Update(task.progress_view, share);
+  };
+  control.stopped = stopped;
+  Estimate estimate;
+  const Map<float> draft = std::move(input->problem.depth);
+  estimate.depth = draft;
+  estimate.normal = std::move(input->problem.normal);
+  try {
+    if (!ReachConsensus(options, input->problem, control, &estimate.depth,
+                        &estimate.normal)) {
+      return false;
+    }
+  } catch (const std::bad_alloc&) {
+    FailForMemory(task.view, ConsensusMemory(options, input->problem,
+                                             draft.width(), draft.height()));
+  }
+  DropOutside(task.pass, &estimate);
+  const auto draw = [&estimate] {
+    return DrawFinalPictures(estimate.depth, estimate.normal);
+  };
+  if (task.pass.writes_pictures && !WritePictures(task, draw)) {
+    return false;
+  }
+  std::vector<int32_t> graph;
+  if (task.pass.writes_graphs) {
+    colmap::mvs::ConsistencyGraph of_draft;
+    of_draft.Read(plan_.MapPath(MapKind::kConsistencyGraph,
+                                task.problem.reference, Pass::kDraft, 0));
+    graph = KeepUnchanged(of_draft, draft, estimate.depth);
+  }
+  WriteView(task, estimate, graph);
+  return true;
+}
+
+// One at a time, as they take memory.
+bool StereoRun::WritePictures(
+    const Task& task, const std::function<std::vector<NamedPicture>()>& draw) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return !Stopped() &&
+         WriteTapaPictures(draw(), PictureFolder(task.pass, task.view),
+                           [this] { return Stopped(); });
+}
+
+void StereoRun::WriteView(const Task& task, const Estimate& estimate,
+                          const std::vector<int32_t>& graph) const {
+  const auto path = [&](MapKind kind) {
+    return plan_.MapPath(kind, task.problem.reference, task.pass.pass,
+                         task.pass.level);
+  };
   WriteDepthMap(path(MapKind::kDepth), estimate.depth);
   WriteNormalMap(path(MapKind::kNormal), estimate.normal);
   if (task.pass.writes_graphs) {
     WriteGraph(path(MapKind::kConsistencyGraph), task.view.width,
-               task.view.height,
-               ConsistencyGraph(estimate, task.problem.sources));
+               task.view.height, graph);
   }
-  return true;
 }
 
 bool StereoRun::IsLost(int device) {

@@ -2,6 +2,7 @@
 #define TAPA_SRC_COLMAP_STEREO_RUN_H_
 
 #include <atomic>
+#include <cstdint>
 #include <functional>
 #include <mutex>
 #include <set>
@@ -15,7 +16,7 @@
 
 namespace tapa {
 
-struct TapaRecord;
+struct NamedPicture;
 
 // Does a program's part of what a plan lists, pass by pass, each worker one
 // view after the other. A run that was stopped, or ended by an error, leaves
@@ -58,8 +59,11 @@ class StereoRun {
   bool ComputeProblem(size_t number, const PassPlan& pass, int device);
   bool ComputeView(const Task& task, int device);
   bool ComputeViewOn(int device, const Task& task);
-  bool WriteView(const Task& task, const Estimate& estimate,
-                 const ProblemInput& input, const TapaRecord& record);
+  bool JudgeView(const Task& task);
+  bool WritePictures(const Task& task,
+                     const std::function<std::vector<NamedPicture>()>& draw);
+  void WriteView(const Task& task, const Estimate& estimate,
+                 const std::vector<int32_t>& graph) const;
 
   bool IsLost(int device);
   // Whether a worker's GPU is lost while there are others.

@@ -2,8 +2,6 @@
 
 #include <unistd.h>
 
-#include <vector>
-
 #include "src/base/atomic_file.h"
 #include "src/pictures/image_io.h"
 #include "util/misc.h"
@@ -17,15 +15,15 @@ std::string PathOf(const std::string& folder, const std::string& picture) {
 
 }  // namespace
 
-bool WriteTapaPictures(const TapaView& view, const std::string& folder,
-                       const std::function<bool()>& stopped) {
-  if (stopped()) {
-    return false;
-  }
-  const std::vector<NamedPicture> pictures = DrawTapaPictures(view);
+void RemoveTapaPictures(const std::string& folder) {
   for (const std::string& name : TapaPictureNames()) {
     unlink(PathOf(folder, name).c_str());
   }
+}
+
+bool WriteTapaPictures(const std::vector<NamedPicture>& pictures,
+                       const std::string& folder,
+                       const std::function<bool()>& stopped) {
   for (const NamedPicture& picture : pictures) {
     if (stopped()) {
       return false;

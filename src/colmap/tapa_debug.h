@@ -3,17 +3,21 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "src/pictures/tapa_pictures.h"
 
 namespace tapa {
 
-// Draws the pictures of a view into its folder, which has to be there, as PNG.
-// Each is there under its name only when it is complete. Pictures of an earlier
-// run that are not drawn this time are removed, as they would tell of other
-// maps. Returns false if stopped. Throws Failure if they cannot be written.
-bool WriteTapaPictures(const TapaView& view, const std::string& folder,
+// Writes pictures of a view into its folder, which has to be there, as PNG.
+// Each is there under its name only when it is complete. Returns false if
+// stopped. Throws Failure if they cannot be written.
+bool WriteTapaPictures(const std::vector<NamedPicture>& pictures,
+                       const std::string& folder,
                        const std::function<bool()>& stopped);
+
+// Removes the pictures of an earlier run, which would tell of other maps.
+void RemoveTapaPictures(const std::string& folder);
 
 }  // namespace tapa
 

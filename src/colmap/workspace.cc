@@ -72,9 +72,10 @@ std::string WorkspaceLocation::LevelsPath() const {
   return colmap::JoinPaths(StereoPath(), "levels");
 }
 
-std::string WorkspaceLocation::LevelPath(int level) const {
-  return level == 0 ? StereoPath()
-                    : colmap::JoinPaths(LevelsPath(), std::to_string(level));
+std::string WorkspaceLocation::LevelPath(Pass pass, int level) const {
+  return IsResult(pass, level)
+             ? StereoPath()
+             : colmap::JoinPaths(LevelsPath(), std::to_string(level));
 }
 
 std::string WorkspaceLocation::MapPath(MapKind kind,
@@ -83,17 +84,17 @@ std::string WorkspaceLocation::MapPath(MapKind kind,
   const char* folder = kind == MapKind::kDepth    ? "depth_maps"
                        : kind == MapKind::kNormal ? "normal_maps"
                                                   : "consistency_graphs";
-  return colmap::JoinPaths(LevelPath(level), folder,
+  return colmap::JoinPaths(LevelPath(pass, level), folder,
                            image_name + "." + PassName(pass) + ".bin");
 }
 
 std::string WorkspaceLocation::RecordPath(Pass pass, int level) const {
-  return colmap::JoinPaths(LevelPath(level),
+  return colmap::JoinPaths(LevelPath(pass, level),
                            std::string("options.") + PassName(pass) + ".txt");
 }
 
 std::string WorkspaceLocation::ViewsRecordPath(Pass pass, int level) const {
-  return colmap::JoinPaths(LevelPath(level),
+  return colmap::JoinPaths(LevelPath(pass, level),
                            std::string("views.") + PassName(pass) + ".txt");
 }
 

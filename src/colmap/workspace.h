@@ -29,15 +29,16 @@ struct WorkspaceLocation {
   std::string RecordPath(Pass pass, int level) const;
   // Record of what the maps of a pass were made from (views_record.h).
   std::string ViewsRecordPath(Pass pass, int level) const;
-  // Folder of the maps of all levels but level 0 (src/mvs/levels.h), which a
-  // run removes at its end.
+  // Folder of drafts and of the maps of all levels but level 0
+  // (src/mvs/levels.h), which a run removes at its end.
   std::string LevelsPath() const;
 
  private:
-  std::string LevelPath(int level) const;
+  std::string LevelPath(Pass pass, int level) const;
 };
 
-// Removes the folder of coarse levels, if there is one. Throws Failure.
+// Removes the folder of coarse levels and drafts, if there is one. Throws
+// Failure.
 void RemoveLevels(const WorkspaceLocation& location);
 
 // Reads the sparse model. Throws Failure if parts of the workspace are missing

@@ -44,11 +44,14 @@ struct TapaOptions {
   // Options::filter_min_num_consistent but at least one. Planes of superpixels,
   // fitted to those that reach that number, replace the others; then triangles
   // between estimates, silhouettes, and planes through what is around regions.
+  // Last of all, views judge each other (tapa/consensus.h), which is a pass of
+  // its own.
   bool completion = true;
   bool completion_sightings = true;
   bool completion_triangles = true;
   bool completion_silhouettes = true;
   bool completion_regions = true;
+  bool completion_consensus = true;
   double completion_agreement = 0.5;
   double completion_radius = 0.1;
   double completion_textureness = 0.5;
@@ -139,6 +142,9 @@ void VisitTapaOptions(Options* options, const Visitor& visit) {
   option("tapa_completion_regions", &o.completion_regions, completes,
          "Regions of one colour take the plane through the textured estimates "
          "around them");
+  option("tapa_completion_consensus", &o.completion_consensus, completes,
+         "When all views are complete, what more of them speak against than "
+         "for goes, or gives way to what they see instead");
   option("tapa_completion_agreement", &o.completion_agreement, completes,
          "Share of the estimates nearby that have to lie on a plane",
          Range::From(0, 1));

@@ -53,11 +53,16 @@ const std::vector<std::string>& TapaPictureNames();
 //   12_final_depth
 //   13_final_normals
 //
-// Depths share the colours of the final depth's range. All but the legend have
+// Depths share the colours of the range of view.depth. All but the legend have
 // the size of the photograph, pixel by pixel. Those of parts that were off are
 // left out. Throws std::invalid_argument if parts are missing that must be
 // there, or differ in size.
 std::vector<NamedPicture> DrawTapaPictures(const TapaView& view);
+
+// The last two of them anew, for an estimate that other views had a say in
+// (tapa/consensus.h).
+std::vector<NamedPicture> DrawFinalPictures(const Map<float>& depth,
+                                            const Map<Vec3>& normal);
 
 // The colour of a hypothesis (Hypothesis in sweep/hypotheses.h).
 cv::Vec3b HypothesisColor(int hypothesis);

@@ -1,0 +1,48 @@
+#ifndef TAPA_SRC_MVS_TAPA_CONSENSUS_H_
+#define TAPA_SRC_MVS_TAPA_CONSENSUS_H_
+
+#include <cstddef>
+
+#include "src/base/map.h"
+#include "src/base/vec3.h"
+#include "src/mvs/control.h"
+#include "src/mvs/options.h"
+#include "src/mvs/problem.h"
+
+// Beyond TAPA-MVS: what complete views say of each other. See docs/tapa.md for
+// what it gains.
+
+namespace tapa {
+
+// Lets the source views judge depth (0: none) and normal of the reference view,
+// when all of them are complete. A surface at a depth of a pixel has one vote
+//
+//   - for it of every source view that sees it there itself, to
+//     relative_plane_distance (e),
+//   - against it of every source view that sees through it: whose own surface
+//     is further away by more than 2 e, as two estimates of one surface may
+//     each be wrong by e.
+//
+// An estimate with more votes against it than for it gives way to what some
+// source view sees on the pixel's ray, of several to that with the largest
+// lead, if that is at least three votes. Without such it goes. A pixel without
+// an estimate is filled under the same condition. Masked pixels get nothing.
+// New estimates lie on the plane through the source view's pixels around what
+// it sees.
+//
+// Only cameras and depth maps of the views are looked at; a source view without
+// a depth map has no votes. The result does not depend on the number of
+// threads. Returns false, with maps that make no sense, if control.stopped()
+// said so.
+bool ReachConsensus(const Options& options, const Problem& problem,
+                    const Control& control, Map<float>* depth,
+                    Map<Vec3>* normal);
+
+// Bytes of memory that it needs besides the views' maps: for w x h pixels and t
+// threads, or source views if these are fewer, w h (8 + 4 t).
+size_t ConsensusMemory(const Options& options, const Problem& problem,
+                       int width, int height);
+
+}  // namespace tapa
+
+#endif  // TAPA_SRC_MVS_TAPA_CONSENSUS_H_
