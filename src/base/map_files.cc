@@ -113,6 +113,7 @@ void MapRows::Check(MapKind kind, uint64_t file_size) {
   if (bytes % sizeof(int32_t) != 0) {
     Fail(path_, "is truncated");
   }
+  num_bytes_ = bytes;
 }
 
 size_t MapRows::ReadBytes(void* bytes, size_t size, uint64_t at) const {
@@ -130,6 +131,14 @@ void MapRows::Read(int channel, int row, float* values) const {
   if (ReadBytes(values, size, begin_ + sizeof(float) * index) != size) {
     Fail(path_, "was cut off while it was read");
   }
+}
+
+std::vector<int32_t> MapRows::ReadList() const {
+  std::vector<int32_t> values(num_bytes_ / sizeof(int32_t));
+  if (ReadBytes(values.data(), num_bytes_, begin_) != num_bytes_) {
+    Fail(path_, "was cut off while it was read");
+  }
+  return values;
 }
 
 void CheckMapFile(const std::string& path, MapKind kind) {
@@ -174,6 +183,23 @@ Map<Vec3> ReadNormalMap(const std::string& path) {
     }
   }
   return map;
+}
+
+std::vector<int32_t> ReadGraph(const std::string& path) {
+  const MapRows rows(path, MapKind::kConsistencyGraph);
+  std::vector<int32_t> graph = rows.ReadList();
+  size_t at = 0;
+  while (at < graph.size()) {
+    const size_t left = graph.size() - at;
+    const int32_t count = left < 3 ? 0 : graph[at + 2];
+    if (count <= 0 || static_cast<size_t>(count) > left - 3 || graph[at] < 0 ||
+        graph[at] >= rows.width() || graph[at + 1] < 0 ||
+        graph[at + 1] >= rows.height()) {
+      Fail(path, "is damaged; remove it to have it computed again");
+    }
+    at += 3 + count;
+  }
+  return graph;
 }
 
 void WriteDepthMap(const std::string& path, const Map<float>& map) {

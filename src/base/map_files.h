@@ -49,6 +49,9 @@ class MapRows {
   // the file cannot be read.
   void Read(int channel, int row, float* values) const;
 
+  // All of a consistency graph. Throws Failure as above.
+  std::vector<int32_t> ReadList() const;
+
  private:
   // Reads the header and compares it with the length of the file.
   void Check(MapKind kind, uint64_t file_size);
@@ -61,12 +64,17 @@ class MapRows {
   int height_ = 0;
   // Where the values begin.
   uint64_t begin_ = 0;
+  // How many bytes of them there are.
+  uint64_t num_bytes_ = 0;
 };
 
 // Read a valid file of any size. Throw Failure as CheckMapFile does. Values are
 // returned as they stand in the file.
 Map<float> ReadDepthMap(const std::string& path);
 Map<Vec3> ReadNormalMap(const std::string& path);
+
+// The same of a consistency graph, as it is written below.
+std::vector<int32_t> ReadGraph(const std::string& path);
 
 // Write a file such that it is there under its name only when it is complete:
 // beside it first, then renamed. Folders are made as needed. Throw Failure,

@@ -52,20 +52,19 @@ std::vector<int32_t> ConsistencyGraph(const Estimate& estimate,
   return graph;
 }
 
-std::vector<int32_t> KeepUnchanged(const colmap::mvs::ConsistencyGraph& graph,
+std::vector<int32_t> KeepUnchanged(const std::vector<int32_t>& graph,
                                    const Map<float>& before,
                                    const Map<float>& after) {
   std::vector<int32_t> kept;
-  for (int row = 0; row < after.height(); ++row) {
-    for (int col = 0; col < after.width(); ++col) {
-      int count;
-      const int* views;
-      graph.GetImageIdxs(row, col, &count, &views);
-      if (count > 0 && before.At(row, col) == after.At(row, col)) {
-        kept.insert(kept.end(), {col, row, count});
-        kept.insert(kept.end(), views, views + count);
-      }
+  auto at = graph.begin();
+  while (at != graph.end()) {
+    const int col = at[0];
+    const int row = at[1];
+    const auto end = at + 3 + at[2];
+    if (before.At(row, col) == after.At(row, col)) {
+      kept.insert(kept.end(), at, end);
     }
+    at = end;
   }
   return kept;
 }

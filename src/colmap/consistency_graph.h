@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "mvs/consistency_graph.h"
 #include "src/mvs/problem.h"
 
 namespace tapa {
@@ -18,7 +17,7 @@ std::vector<int32_t> ConsistencyGraph(const Estimate& estimate,
 
 // What a graph lists of the pixels whose depth is still what it was: other
 // estimates are not those that source views supported.
-std::vector<int32_t> KeepUnchanged(const colmap::mvs::ConsistencyGraph& graph,
+std::vector<int32_t> KeepUnchanged(const std::vector<int32_t>& graph,
                                    const Map<float>& before,
                                    const Map<float>& after);
 

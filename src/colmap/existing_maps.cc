@@ -9,6 +9,7 @@
 #include "src/base/failure.h"
 #include "src/colmap/masks.h"
 #include "src/colmap/progress.h"
+#include "src/colmap/tapa_debug.h"
 #include "util/misc.h"
 
 namespace tapa {
@@ -86,7 +87,12 @@ bool IsDone(const StereoPlan& plan, const PassPlan& pass, int view) {
   const bool has_depth = has(MapKind::kDepth);
   const bool has_normal = has(MapKind::kNormal);
   const bool has_graph = !pass.writes_graphs || has(MapKind::kConsistencyGraph);
-  return has_depth && has_normal && has_graph;
+  // A draft has no other use for who asks for pictures.
+  const bool lacks_pictures =
+      pass.writes_pictures && pass.pass == Pass::kDraft &&
+      !HasTapaPictures(
+          PictureFolder(pass.options.tapa_debug, plan.View(view, 0).name));
+  return has_depth && has_normal && has_graph && !lacks_pictures;
 }
 
 // Whether a plan depends on which maps a pass has. What a worker has to compute

@@ -3,10 +3,10 @@
 
 namespace tapa {
 
-// The kinds of maps, each made by a pass over all views from those of the kind
-// before. With TAPA's consensus (src/mvs/tapa/consensus.h) what the geometric
-// pass of full size makes is a draft, and views judge each other's drafts to
-// make the geometric maps.
+// The kinds of maps, each made by a pass over all views: geometric ones from
+// the photometric ones of their level. With TAPA's consensus
+// (src/mvs/tapa/consensus.h) what the geometric pass of full size makes is a
+// draft, and views judge each other's drafts to make the geometric maps.
 enum class Pass { kPhotometric, kDraft, kGeometric };
 
 // Whether maps of a pass at a level (src/mvs/levels.h) are there for the user

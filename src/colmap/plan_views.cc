@@ -99,6 +99,10 @@ class MissingFiles {
 // and with the other sources of these.
 void AddHelpers(const PatchMatchOptions& options, StereoPlan* plan) {
   plan->num_results = plan->problems.size();
+  plan->is_result.assign(plan->views[0].size(), false);
+  for (const ViewIndices& problem : plan->problems) {
+    plan->is_result[problem.reference] = true;
+  }
   if (!options.geom_consistency) {
     return;
   }

@@ -33,7 +33,7 @@ ProblemReader::ProblemReader(const StereoPlan& plan)
           }),
       depth_maps_(CacheBytes(plan) * 4 / 5, [this](int key) {
         if (key >= DraftKey(0)) {
-          return ReadDraft(key - DraftKey(0));
+          return ReadDepth(key - DraftKey(0), 0, Pass::kDraft);
         }
         const int level_size = Key(0, 1);
         return ReadDepth(key % level_size, key / level_size,
@@ -46,19 +46,6 @@ int ProblemReader::Key(int view, int level) const {
 
 int ProblemReader::DraftKey(int view) const {
   return Key(view, static_cast<int>(plan_.views.size()));
-}
-
-bool ProblemReader::HasDraft(int view) const {
-  return colmap::ExistsPath(
-             plan_.MapPath(MapKind::kDepth, view, Pass::kDraft, 0)) ||
-         colmap::ExistsPath(
-             plan_.MapPath(MapKind::kDepth, view, Pass::kGeometric, 0));
-}
-
-Map<float> ProblemReader::ReadDraft(int view) const {
-  const bool is_gone = !colmap::ExistsPath(
-      plan_.MapPath(MapKind::kDepth, view, Pass::kDraft, 0));
-  return ReadDepth(view, 0, is_gone ? Pass::kGeometric : Pass::kDraft);
 }
 
 Map<float> ProblemReader::ReadDepth(int view, int level, Pass pass) const {
@@ -100,7 +87,7 @@ bool ProblemReader::ReadPhotos(const std::function<bool()>& stopped) {
   std::map<int, int> levels;
   for (const PassPlan& pass : plan_.passes) {
     for (size_t i = 0; i < plan_.problems.size(); ++i) {
-      if (pass.Computes(i)) {
+      if (pass.Computes(i) && !pass.takes_drafts) {
         const ViewIndices& problem = plan_.problems[i];
         levels.emplace(problem.reference, pass.level);
         for (const int source : problem.sources) {
@@ -187,7 +174,7 @@ std::unique_ptr<ProblemInput> ProblemReader::ReadDrafts(
     }
     View view;
     view.camera = plan_.View(source, 0).camera;
-    if (HasDraft(source)) {
+    if (plan_.is_result[source]) {
       input->depth_maps.push_back(depth_maps_.Get(DraftKey(source)));
       view.depth = input->depth_maps.back().get();
     }

@@ -44,8 +44,8 @@ class ProblemReader {
                                      const std::function<bool()>& stopped);
 
   // What views need to judge each other's drafts (tapa/consensus.h): cameras,
-  // depth maps, the view's own maps and mask, but no photographs. Returns
-  // nothing if stopped. Throws Failure.
+  // depth maps, the view's own maps and mask, but no photographs. Sources that
+  // are no results have no drafts. Returns nothing if stopped. Throws Failure.
   std::unique_ptr<ProblemInput> ReadDrafts(
       const ViewIndices& problem, const PassPlan& pass,
       const std::function<bool()>& stopped);
@@ -58,12 +58,8 @@ class ProblemReader {
   int Key(int view, int level) const;
   // A view's draft, which comes after all levels.
   int DraftKey(int view) const;
-  // Whether there is a draft of a view, or the map that it has become. A view
-  // that is only the source of others has neither.
-  bool HasDraft(int view) const;
   // Read maps of a pass.
   Map<float> ReadDepth(int view, int level, Pass pass) const;
-  Map<float> ReadDraft(int view) const;
   Map<Vec3> ReadNormal(int view, int level, Pass pass) const;
   DepthNormalMaps ReadStart(const PassPlan& pass, const View& reference,
                             int view);

@@ -80,10 +80,10 @@ void FindNeeded(StereoPlan* plan) {
       }
       before[i] = true;
       for (const int source : plan->problems[i].sources) {
+        // Helpers have no drafts.
         const int other = problem_of[source];
         if (pass.pass != Pass::kPhotometric && other >= 0 &&
-            !(pass.takes_drafts &&
-              (plan->IsHelper(other) || pass.is_done[other]))) {
+            !(pass.takes_drafts && !plan->is_result[source])) {
           before[other] = true;
         }
       }
@@ -178,6 +178,10 @@ bool StereoPlan::IsOwn(size_t problem) const {
   // Helpers are none any more for who plans when they have their maps.
   return IsHelper(problem) ? part.HasNumber(problems[problem].reference)
                            : part.HasItem(problem, num_results);
+}
+
+bool StereoPlan::Draws(const PassPlan& pass, size_t problem) const {
+  return pass.writes_pictures && passes.back().Computes(problem);
 }
 
 int StereoPlan::NumDone() const {

@@ -25,7 +25,7 @@ struct PassPlan {
   int level;
   // Those in force in it (PassOptions).
   colmap::mvs::PatchMatchOptions options;
-  // Whether it starts from the maps of the pass before.
+  // Whether its estimation starts from the maps of the pass before.
   bool has_start = false;
   // Whether it lets views judge each other's drafts rather than estimate.
   bool takes_drafts = false;
@@ -60,6 +60,8 @@ struct StereoPlan {
   // others needs their photometric maps.
   std::vector<ViewIndices> problems;
   size_t num_results = 0;
+  // By view: whether its maps are a result.
+  std::vector<bool> is_result;
   // By view; others have none.
   std::map<int, FittedPrior> priors;
   // One after the other; the maps of the last one are the result.
@@ -73,6 +75,9 @@ struct StereoPlan {
   bool IsHelper(size_t problem) const { return problem >= num_results; }
   // Whether a problem is this program's part; all are, but of a worker's.
   bool IsOwn(size_t problem) const;
+  // Whether a pass draws what it does with a problem's view: it shows how the
+  // result came about, so it does where that is computed.
+  bool Draws(const PassPlan& pass, size_t problem) const;
   // Number of views whose result is there.
   int NumDone() const;
   // Of the largest view that is computed, at level 0.

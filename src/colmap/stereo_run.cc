@@ -75,11 +75,6 @@ void DropOutside(const PassPlan& pass, Estimate* estimate) {
                 "cache_size");
 }
 
-// Of the pictures of a view, named as its photograph.
-std::string PictureFolder(const PassPlan& pass, const SceneView& view) {
-  return colmap::JoinPaths(pass.options.tapa_debug, view.name);
-}
-
 }  // namespace
 
 StereoRun::StereoRun(StereoPlan plan, std::vector<int> workers,
@@ -132,9 +127,9 @@ void StereoRun::PrepareFolders() const {
             .insert(colmap::GetParentDir(
                 plan_.MapPath(kind, view, pass.pass, pass.level)));
       }
-      if (pass.Computes(i) && pass.writes_pictures) {
+      if (pass.Computes(i) && plan_.Draws(pass, i)) {
         picture_folders.insert(
-            PictureFolder(pass, plan_.View(view, pass.level)));
+            PictureFolder(pass.options.tapa_debug, plan_.View(view, 0).name));
       }
     }
   }
@@ -165,6 +160,9 @@ void StereoRun::TidyUp() const {
 // A small image leaves most of a GPU idle: at coarse levels it gets more views
 // at a time, while the CPU has all of its threads at work on one.
 std::vector<int> StereoRun::WorkersOf(const PassPlan& pass) const {
+  if (pass.takes_drafts) {
+    return {kCpu};
+  }
   constexpr int kMaxTimes = 4;
   const int times = pass.level > 1 ? kMaxTimes : 1 << pass.level;
   std::vector<int> workers;
@@ -251,7 +249,9 @@ bool StereoRun::ComputeProblem(size_t number, const PassPlan& pass,
       {pass.pass, pass.level,
        std::to_string(number + 1) + "/" + std::to_string(plan_.problems.size()),
        view.name, Megapixels(view), Work(pass, view)});
-  if (!ComputeView({pass, problem, view, progress_view}, device)) {
+  if (!ComputeView(
+          {pass, problem, view, plan_.Draws(pass, number), progress_view},
+          device)) {
     return false;
   }
   progress_.EndView(progress_view);
@@ -302,7 +302,7 @@ bool StereoRun::ComputeViewOn(int device, const Task& task) {
   };
   control.stopped = stopped;
   TapaRecord record;
-  if (task.pass.writes_pictures) {
+  if (task.draws) {
     control.record = &record;
   }
   const size_t memory = EstimateDepthMemory(options, input->problem);
@@ -320,7 +320,7 @@ bool StereoRun::ComputeViewOn(int device, const Task& task) {
   }
   DropOutside(task.pass, &*estimate);
   // Before the maps, so that a run that is cut off here draws them again.
-  if (task.pass.writes_pictures) {
+  if (task.draws) {
     TapaView view;
     view.title = task.view.name;
     view.photograph = &*input->color;
@@ -329,7 +329,8 @@ bool StereoRun::ComputeViewOn(int device, const Task& task) {
     view.normal = &estimate->normal;
     view.min_textureness =
         static_cast<float>(task.pass.options.tapa.min_textureness);
-    RemoveTapaPictures(PictureFolder(task.pass, task.view));
+    RemoveTapaPictures(
+        PictureFolder(task.pass.options.tapa_debug, task.view.name));
     if (!WritePictures(task, [&view] { return DrawTapaPictures(view); })) {
       return false;
     }
@@ -351,11 +352,11 @@ bool StereoRun::JudgeView(const Task& task) {
     progress_.Update(task.progress_view, share);
   };
   control.stopped = stopped;
-  Estimate estimate;
   const Map<float> draft = std::move(input->problem.depth);
-  estimate.depth = draft;
+  Estimate estimate;
   estimate.normal = std::move(input->problem.normal);
   try {
+    estimate.depth = draft;
     if (!ReachConsensus(options, input->problem, control, &estimate.depth,
                         &estimate.normal)) {
       return false;
@@ -365,18 +366,18 @@ bool StereoRun::JudgeView(const Task& task) {
                                              draft.width(), draft.height()));
   }
   DropOutside(task.pass, &estimate);
-  const auto draw = [&estimate] {
-    return DrawFinalPictures(estimate.depth, estimate.normal);
+  const auto draw = [&] {
+    return DrawFinalPictures(draft, estimate.depth, estimate.normal);
   };
-  if (task.pass.writes_pictures && !WritePictures(task, draw)) {
+  if (task.draws && !WritePictures(task, draw)) {
     return false;
   }
   std::vector<int32_t> graph;
   if (task.pass.writes_graphs) {
-    colmap::mvs::ConsistencyGraph of_draft;
-    of_draft.Read(plan_.MapPath(MapKind::kConsistencyGraph,
-                                task.problem.reference, Pass::kDraft, 0));
-    graph = KeepUnchanged(of_draft, draft, estimate.depth);
+    graph = KeepUnchanged(
+        ReadGraph(plan_.MapPath(MapKind::kConsistencyGraph,
+                                task.problem.reference, Pass::kDraft, 0)),
+        draft, estimate.depth);
   }
   WriteView(task, estimate, graph);
   return true;
@@ -387,8 +388,10 @@ bool StereoRun::WritePictures(
     const Task& task, const std::function<std::vector<NamedPicture>()>& draw) {
   const std::lock_guard<std::mutex> lock(mutex_);
   return !Stopped() &&
-         WriteTapaPictures(draw(), PictureFolder(task.pass, task.view),
-                           [this] { return Stopped(); });
+         WriteTapaPictures(
+             draw(),
+             PictureFolder(task.pass.options.tapa_debug, task.view.name),
+             [this] { return Stopped(); });
 }
 
 void StereoRun::WriteView(const Task& task, const Estimate& estimate,

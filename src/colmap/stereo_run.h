@@ -43,6 +43,7 @@ class StereoRun {
     const PassPlan& pass;
     const ViewIndices& problem;
     const SceneView& view;
+    bool draws;
     // The number by which progress_ knows it.
     int progress_view;
   };

@@ -15,6 +15,16 @@ std::string PathOf(const std::string& folder, const std::string& picture) {
 
 }  // namespace
 
+std::string PictureFolder(const std::string& tapa_debug,
+                          const std::string& view) {
+  return colmap::JoinPaths(tapa_debug, view);
+}
+
+// The last one is written last.
+bool HasTapaPictures(const std::string& folder) {
+  return colmap::ExistsFile(PathOf(folder, TapaPictureNames().back()));
+}
+
 void RemoveTapaPictures(const std::string& folder) {
   for (const std::string& name : TapaPictureNames()) {
     unlink(PathOf(folder, name).c_str());

@@ -16,6 +16,14 @@ bool WriteTapaPictures(const std::vector<NamedPicture>& pictures,
                        const std::string& folder,
                        const std::function<bool()>& stopped);
 
+// Where the pictures of a view are: named as its photograph, within the folder
+// of the option tapa_debug.
+std::string PictureFolder(const std::string& tapa_debug,
+                          const std::string& view);
+
+// Whether all pictures of a view are there that are always drawn.
+bool HasTapaPictures(const std::string& folder);
+
 // Removes the pictures of an earlier run, which would tell of other maps.
 void RemoveTapaPictures(const std::string& folder);
 

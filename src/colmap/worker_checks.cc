@@ -1,7 +1,6 @@
 #include "src/colmap/worker_checks.h"
 
 #include <optional>
-#include <set>
 #include <string>
 
 #include "src/base/failure.h"
@@ -49,29 +48,26 @@ void CheckStepBefore(const StereoPlan& plan, const PassPlan& pass,
   const auto check = [&](MapKind kind, int view) {
     const std::string path =
         plan.MapPath(kind, view, before.pass, before.level);
-    // A source that is not computed lends its map of full size, or the one that
-    // its draft has become.
-    const Pass instead = pass.takes_drafts ? pass.pass : before.pass;
+    // A source that is not computed lends its map of full size.
     if (!colmap::ExistsPath(path) &&
-        !colmap::ExistsPath(plan.MapPath(kind, view, instead, 0))) {
+        !colmap::ExistsPath(plan.MapPath(kind, view, before.pass, 0))) {
       throw Failure("There is no " + path +
                     ", from which this step starts; all shares of the step "
                     "before have to be complete first");
     }
   };
-  // Others have no drafts.
-  std::set<int> results;
-  for (size_t i = 0; i < plan.num_results; ++i) {
-    results.insert(plan.problems[i].reference);
-  }
   for (size_t i = 0; i < plan.problems.size(); ++i) {
     if (!pass.Computes(i)) {
       continue;
     }
     check(MapKind::kDepth, plan.problems[i].reference);
     check(MapKind::kNormal, plan.problems[i].reference);
+    if (pass.takes_drafts && pass.writes_graphs) {
+      check(MapKind::kConsistencyGraph, plan.problems[i].reference);
+    }
     for (const int source : plan.problems[i].sources) {
-      if (pass.takes_drafts ? results.count(source) > 0
+      // Helpers have no drafts.
+      if (pass.takes_drafts ? plan.is_result[source]
                             : pass.pass != Pass::kPhotometric) {
         check(MapKind::kDepth, source);
       }

@@ -31,10 +31,12 @@ struct Camera {
 // alive for the duration of the call.
 struct View {
   Camera camera;
-  // Grey image, 0 to 255. Required.
+  // Grey image, 0 to 255. Required, but where views judge each other
+  // (tapa/consensus.h).
   const Map<uint8_t>* image = nullptr;
-  // Depth map from the photometric pass, same size as the image, 0 where there
-  // is no estimate. Required of the source views in a geometric pass.
+  // Depth map from the photometric pass or, where views judge each other, the
+  // complete one: same size as the image, 0 where there is no estimate.
+  // Required of the source views in a geometric pass.
   const Map<float>* depth = nullptr;
 };
 

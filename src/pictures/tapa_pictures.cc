@@ -386,10 +386,11 @@ std::vector<NamedPicture> DrawTapaPictures(const TapaView& view) {
   return pictures;
 }
 
-std::vector<NamedPicture> DrawFinalPictures(const Map<float>& depth,
+std::vector<NamedPicture> DrawFinalPictures(const Map<float>& before,
+                                            const Map<float>& depth,
                                             const Map<Vec3>& normal) {
   const std::vector<std::string>& names = TapaPictureNames();
-  return {{names[kFinalDepth], ColorDepth(depth, RobustDepthRange(depth))},
+  return {{names[kFinalDepth], ColorDepth(depth, RobustDepthRange(before))},
           {names[kFinalNormals], ColorNormals(normal)}};
 }
 

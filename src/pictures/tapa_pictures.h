@@ -60,8 +60,9 @@ const std::vector<std::string>& TapaPictureNames();
 std::vector<NamedPicture> DrawTapaPictures(const TapaView& view);
 
 // The last two of them anew, for an estimate that other views had a say in
-// (tapa/consensus.h).
-std::vector<NamedPicture> DrawFinalPictures(const Map<float>& depth,
+// (tapa/consensus.h), in the colours of what it was before.
+std::vector<NamedPicture> DrawFinalPictures(const Map<float>& before,
+                                            const Map<float>& depth,
                                             const Map<Vec3>& normal);
 
 // The colour of a hypothesis (Hypothesis in sweep/hypotheses.h).

@@ -21,5 +21,19 @@ TEST(ConsistencyGraph, IsEmptyWithoutFilter) {
   EXPECT_TRUE(ConsistencyGraph(estimate, {10, 11}).empty());
 }
 
+TEST(ConsistencyGraph, LosesPixelsThatHaveChanged) {
+  // 3x1 pixels: one that stays, one that has moved, one that is gone.
+  Map<float> before(3, 1, 2);
+  Map<float> after = before;
+  after.At(0, 1) = 2.5f;
+  after.At(0, 2) = 0;
+  const std::vector<int32_t> graph = {0, 0,  2, 10, 12, 1, 0,
+                                      1, 11, 2, 0,  1,  12};
+  EXPECT_EQ(KeepUnchanged(graph, before, after),
+            (std::vector<int32_t>{0, 0, 2, 10, 12}));
+  EXPECT_EQ(KeepUnchanged(graph, before, before), graph);
+  EXPECT_TRUE(KeepUnchanged({}, before, after).empty());
+}
+
 }  // namespace
 }  // namespace tapa

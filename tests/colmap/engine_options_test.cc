@@ -118,7 +118,7 @@ TEST(PassOptions, LaterLevelsDoLessAndChangeLess) {
     EXPECT_EQ(result.first_perturbation, perturbation) << level;
     EXPECT_EQ(result.filter, filters) << level;
     EXPECT_EQ(result.num_levels, 3);
-    EXPECT_EQ(result.geom_consistency, pass == Pass::kGeometric);
+    EXPECT_EQ(result.geom_consistency, pass != Pass::kPhotometric);
   };
   expect(Pass::kPhotometric, 2, 7, 1, false);
   expect(Pass::kGeometric, 2, 2, 0.2, false);
@@ -126,6 +126,8 @@ TEST(PassOptions, LaterLevelsDoLessAndChangeLess) {
     expect(Pass::kPhotometric, level, 3, 0.1, false);
     expect(Pass::kGeometric, level, 2, 0.1, level == 0);
   }
+  // What the geometric pass would make of full size without a consensus.
+  expect(Pass::kDraft, 0, 2, 0.1, true);
   // Upper bounds.
   options.num_iterations = 1;
   options.first_perturbation = 0.05;
@@ -233,6 +235,23 @@ TEST(ViewSeed, DependsOnAllItIsGiven) {
   EXPECT_EQ(seeds.size(), 36);
   EXPECT_EQ(ViewSeed(1, "a.jpg", Pass::kGeometric),
             ViewSeed(1, "a.jpg", Pass::kGeometric));
+  EXPECT_EQ(ViewSeed(1, "a.jpg", Pass::kDraft),
+            ViewSeed(1, "a.jpg", Pass::kGeometric));
+}
+
+TEST(HasDrafts, IfAllOfItsPartsAreOn) {
+  PatchMatchOptions options;
+  EXPECT_FALSE(HasDrafts(options));
+  options.tapa.enabled = true;
+  options.geom_consistency = true;
+  EXPECT_TRUE(HasDrafts(options));
+  for (bool* part :
+       {&options.tapa.refinement, &options.tapa.completion,
+        &options.tapa.completion_consensus, &options.geom_consistency}) {
+    *part = false;
+    EXPECT_FALSE(HasDrafts(options));
+    *part = true;
+  }
 }
 
 TEST(HostOptions, TableListsEveryOptionOnce) {

@@ -110,6 +110,26 @@ TEST(MapFiles, NoticesThatAFileIsCutOffWhileItIsRead) {
   EXPECT_THROW(rows.Read(0, 1, values), Failure);
 }
 
+TEST(MapFiles, ReadsGraphs) {
+  const TestFolder folder;
+  const std::string path = folder.Path("a.bin");
+  const std::vector<int32_t> graph = {2, 1, 2, 40, 50, 0, 0, 1, 7};
+  WriteGraph(path, 3, 2, graph);
+  EXPECT_EQ(ReadGraph(path), graph);
+  WriteGraph(path, 3, 2, {});
+  EXPECT_TRUE(ReadGraph(path).empty());
+  // Beyond the image, without views, cut off.
+  const std::vector<std::vector<int32_t>> damaged = {
+      {3, 1, 1, 40},  {2, 2, 1, 40}, {-1, 0, 1, 40},
+      {2, -1, 1, 40}, {2, 1, 0},     {2, 1, -3},
+      {2, 1},         {2, 1, 2, 40}, {2, 1, INT32_MAX, 40}};
+  for (const std::vector<int32_t>& values : damaged) {
+    WriteGraph(path, 3, 2, values);
+    EXPECT_THROW(ReadGraph(path), Failure);
+  }
+  EXPECT_THROW(ReadGraph(folder.Path("none.bin")), Failure);
+}
+
 TEST(MapFiles, ColmapReadsGraph) {
   const TestFolder folder;
   WriteGraph(folder.Path("a.bin"), 3, 2, {2, 1, 2, 40, 50});

@@ -52,13 +52,15 @@ class PartsTest(tiny.TestCase):
 
     def test_same_files(self):
         for options in ({}, {"tapa": 1}, {"geom_consistency": 0},
-                        {"write_consistency_graph": 1}):
+                        {"write_consistency_graph": 1},
+                        {"tapa": 1, "write_consistency_graph": 1}):
             with self.subTest(options=options):
                 shutil.rmtree(self.path("stereo"))
                 tiny.make_config(self.folder, self.names)
                 shutil.rmtree(self.path("single"), True)
                 num_steps = self.prepare(**options)
-                self.assertEqual(num_steps, 2 if "geom_consistency" in options else 4)
+                self.assertEqual(num_steps, 2 if "geom_consistency" in options else
+                                 5 if "tapa" in options else 4)
                 self.compute(range(1, num_steps + 1), 2, **options)
                 self.assert_finished(self.single_run(**options), **options)
 
@@ -66,6 +68,22 @@ class PartsTest(tiny.TestCase):
         num_steps = self.prepare()
         self.compute(range(1, num_steps + 1), 7)
         self.assert_finished(self.single_run())
+
+    def test_drafts_without_the_graphs_that_the_last_step_needs(self):
+        num_steps = self.prepare(tapa=1)
+        self.compute(range(1, num_steps), 2, tapa=1)
+        result = self.part(num_steps, tapa=1, write_consistency_graph=1)
+        self.assert_one_error(result, "consistency_graphs", "step before")
+
+    def test_sources_that_are_not_listed_with_tapa(self):
+        """They have no drafts either."""
+        def make(path):
+            tiny.make_workspace(path, num_views=5)
+            tiny.make_config(path, self.names[:2])
+        tiny.make_config(self.folder, self.names[:2])
+        num_steps = self.prepare(tapa=1)
+        self.compute(range(1, num_steps + 1), 3, tapa=1)
+        self.assert_finished(self.single_run(make, tapa=1), tapa=1)
 
     def test_sources_that_are_not_listed(self):
         """They have no result, but photometric maps."""
@@ -101,7 +119,7 @@ class PartsTest(tiny.TestCase):
         self.assert_finished(expected)
 
     def test_worker_is_killed_and_started_again(self):
-        options = {"num_iterations": 6}
+        options = {"num_iterations": 6, "tapa": 1}
         expected = self.single_run(**options)
         num_steps = self.prepare(**options)
         for step in range(1, num_steps + 1):

@@ -205,6 +205,19 @@ def read_map(path):
     return width, height, values
 
 
+def read_graph(path):
+    """Returns (column, row) of the pixels that a consistency graph lists."""
+    with open(path, "rb") as file:
+        data = file.read().split(b"&", 3)[3]
+    values = struct.unpack("<%di" % (len(data) // 4), data)
+    pixels = []
+    at = 0
+    while at < len(values):
+        pixels.append(values[at:at + 2])
+        at += 3 + values[at + 2]
+    return pixels
+
+
 def write_map(path, width, height, values):
     with open(path, "wb") as file:
         file.write(b"%d&%d&%d&" % (width, height, len(values) // (width * height)))

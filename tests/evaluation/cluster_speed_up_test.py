@@ -22,6 +22,10 @@ class SpeedUpTest(unittest.TestCase):
         self.times = speed_up.Times(log({"level 1 photometric": [1.0, 2.0, 3.0, 4.0],
                                          "photometric": [10.0, 10.0, 10.0, 10.0]}, 55))
 
+    def test_every_kind_of_pass_counts(self):
+        steps = {name: [1.0] for name in ("level 1 geometric", "photometric", "draft", "geometric")}
+        self.assertEqual(len(speed_up.Times(log(steps, 10)).views()), 4)
+
     def test_times_of_a_log(self):
         self.assertEqual(self.times.views(), [[1, 2, 3, 4], [10, 10, 10, 10]])
         self.assertAlmostEqual(self.times.start, 5, 3)

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <climits>
 #include <cmath>
 #include <memory>
 #include <random>
@@ -61,7 +62,7 @@ class NaiveConsensus {
     int best_lead = 2;
     double best = 0;
     for (const View& view : problem_.sources) {
-      const double seen = Nearest(view, row, col);
+      const double seen = Candidate(view, row, col);
       if (seen > 0 && Lead(row, col, seen) > best_lead) {
         best_lead = Lead(row, col, seen);
         best = seen;
@@ -71,6 +72,23 @@ class NaiveConsensus {
   }
 
  private:
+  // At a pixel, otherwise beside it.
+  double Candidate(const View& view, int row, int col) const {
+    double nearest = Nearest(view, row, col);
+    if (nearest > 0) {
+      return nearest;
+    }
+    for (int r = row - 1; r <= row + 1; ++r) {
+      for (int c = col - 1; c <= col + 1; ++c) {
+        const double z = Nearest(view, r, c);
+        if (z > 0 && (nearest == 0 || z < nearest)) {
+          nearest = z;
+        }
+      }
+    }
+    return nearest;
+  }
+
   double Nearest(const View& view, int row, int col) const {
     double nearest = 0;
     for (int r = 0; r < view.depth->height(); ++r) {
@@ -240,23 +258,56 @@ TEST_F(ConsensusTest, MaskedPixelsGetNothing) {
 }
 
 TEST_F(ConsensusTest, WhatIsNoDepthIsNone) {
-  sources_[0].At(kRow, kCol) = NAN;
-  sources_[1].At(kRow, kCol) = -1;
-  sources_[2].At(kRow, kCol) = INFINITY;
-  depth_.At(kRow, kCol) = NAN;
+  for (const float none : {NAN, INFINITY, -1.0f, 0.0f}) {
+    // A source view that sees nothing neither speaks for an estimate nor sees
+    // through it.
+    sources_[0] = Map<float>(depth_.width(), depth_.height(), none);
+    problem_.sources.resize(1);
+    depth_ = truth();
+    depth_.At(kRow, kCol) *= 0.8f;
+    depth_.At(kRow, kCol + 1) = none;
+    const float wrong = depth_.At(kRow, kCol);
+    ASSERT_TRUE(Run());
+    EXPECT_EQ(depth_.At(kRow, kCol), wrong);
+    EXPECT_EQ(depth_.At(kRow, kCol + 1), 0);
+  }
+}
+
+// Their points lie two pixels apart in the reference view.
+TEST_F(ConsensusTest, ViewsThatSeeLessTakePixelsWithoutHoles) {
+  SyntheticOptions options;
+  options.width = 20;
+  options.height = 16;
+  options.focal_length = 24;
+  const SyntheticPlane coarse(options);
+  problem_.sources = coarse.GeometricProblem().sources;
+  for (int row = 16; row < 24; ++row) {
+    for (int col = 20; col < 28; ++col) {
+      depth_.At(row, col) *= 0.8f;
+    }
+  }
   ASSERT_TRUE(Run());
-  for (size_t i = 0; i < depth_.size(); ++i) {
-    EXPECT_TRUE(depth_.data()[i] == 0 || IsDepth(depth_.data()[i]));
+  for (int row = 16; row < 24; ++row) {
+    for (int col = 20; col < 28; ++col) {
+      EXPECT_NEAR(depth_.At(row, col) / truth().At(row, col), 1, 1e-4);
+    }
   }
 }
 
 TEST_F(ConsensusTest, EndsWhenStopped) {
+  // At whatever step.
   int num_asked = 0;
+  int last = INT_MAX;
   Control control;
-  control.stopped = [&num_asked] { return ++num_asked > 3; };
-  EXPECT_FALSE(Run(control));
-  control.stopped = [] { return true; };
-  EXPECT_FALSE(Run(control));
+  control.stopped = [&num_asked, &last] { return ++num_asked > last; };
+  ASSERT_TRUE(Run(control));
+  const int num_all = num_asked;
+  ASSERT_GT(num_all, 100);
+  for (last = 0; last < num_all; last += 1 + num_all / 20) {
+    num_asked = 0;
+    EXPECT_FALSE(Run(control)) << last << " of " << num_all;
+    EXPECT_LT(num_asked, last + 20);
+  }
 }
 
 TEST_F(ConsensusTest, TellsHowFarItIs) {
@@ -282,6 +333,13 @@ class MixedConsensusTest : public ConsensusTest {
   }
 
   MixedConsensusTest() : ConsensusTest(Small()) {
+    SyntheticOptions large = Small();
+    large.scaled_width = 36;
+    large.scaled_height = 30;
+    larger_ = std::make_unique<SyntheticPlane>(large);
+    const Problem other = larger_->GeometricProblem();
+    sources_[1] = *other.sources[1].depth;
+    problem_.sources[1].camera = other.sources[1].camera;
     std::mt19937 random(7);
     Disturb(&depth_, &random);
     for (Map<float>& source : sources_) {
@@ -306,6 +364,8 @@ class MixedConsensusTest : public ConsensusTest {
       depth->data()[i] *= noise(*random);
     }
   }
+
+  std::unique_ptr<SyntheticPlane> larger_;
 };
 
 TEST_F(MixedConsensusTest, IsWhatTheNaiveReferenceSays) {

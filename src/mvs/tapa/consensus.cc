@@ -18,7 +18,8 @@ namespace tapa {
 namespace {
 
 // Votes that a source view's surface needs to take a pixel: as many as a
-// triangle (triangle_completion.h).
+// triangle (triangle_completion.h). Other than there, one against counts once:
+// here it takes an estimate away, and not only in favour of a triangle.
 constexpr int kMinLead = 3;
 
 // The source views that have a depth map.
@@ -32,8 +33,7 @@ class Jury {
     for (int m = 0; m < views_.count; ++m) {
       const View& view = problem.sources[m];
       if (view.depth != nullptr) {
-        members_.push_back({m, view.depth, MakeRefCamera(view.camera),
-                            Rotation(problem.reference.camera, view.camera)});
+        members_.push_back({m, view.depth, MakeRefCamera(view.camera)});
       }
     }
   }
@@ -78,26 +78,27 @@ class Jury {
   DepthNormal PlaneOf(int member, int row, int col, float depth) const {
     const Member& from = members_[member];
     const Vec3 ray = reference_.Ray(row, col);
-    DepthNormal result = {depth, (-1 / std::sqrt(Dot(ray, ray))) * ray};
+    const DepthNormal frontal = {depth, (-1 / std::sqrt(Dot(ray, ray))) * ray};
     float z;
     int own_row, own_col;
     if (!FindPixel(from, row, col, depth, &z, &own_row, &own_col)) {
-      return result;
+      return frontal;
     }
     const DepthNormal own =
         DepthPlanes(*from.depth, from.camera, from.depth->width(),
                     from.depth->height())
             .At(own_row, own_col);
-    const Vec3 normal = Rotate(from.rotation, own.normal);
-    const Vec3 p =
-        TransferPoint(views_.B, views_.g, from.m, own_col, own_row, own.depth);
-    const Vec3 point = p.z * reference_.Ray(p.y / p.z, p.x / p.z);
-    const float on_ray = Dot(normal, point) / Dot(normal, ray);
-    if (Dot(normal, ray) < 0 &&
-        std::abs(on_ray - depth) <= tolerance_ * depth) {
-      result = {on_ray, normal};
-    }
-    return result;
+    // Three points of it, in the order of the camera's axes.
+    constexpr int kStep = 8;
+    const Vec3 a = PointOn(from, own, own_row, own_col, 0, 0);
+    const Vec3 b = PointOn(from, own, own_row, own_col, 0, kStep);
+    const Vec3 c = PointOn(from, own, own_row, own_col, kStep, 0);
+    const Vec3 across = Cross(c - a, b - a);
+    const Vec3 normal = (1 / std::sqrt(Dot(across, across))) * across;
+    const float on_ray = Dot(normal, a) / Dot(normal, ray);
+    const bool is_seen =
+        Dot(normal, ray) < 0 && std::abs(on_ray - depth) <= tolerance_ * depth;
+    return is_seen ? DepthNormal{on_ray, normal} : frontal;
   }
 
  private:
@@ -106,29 +107,18 @@ class Jury {
     int m;
     const Map<float>* depth;
     RefCamera camera;
-    // From its frame to the reference camera's, row-major.
-    std::array<float, 9> rotation;
   };
 
-  static std::array<float, 9> Rotation(const Camera& reference,
-                                       const Camera& source) {
-    std::array<float, 9> result;
-    for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j < 3; ++j) {
-        double sum = 0;
-        for (int k = 0; k < 3; ++k) {
-          sum += reference.R[3 * i + k] * source.R[3 * j + k];
-        }
-        result[3 * i + j] = static_cast<float>(sum);
-      }
-    }
-    return result;
-  }
-
-  static Vec3 Rotate(const std::array<float, 9>& R, const Vec3& v) {
-    return {R[0] * v.x + R[1] * v.y + R[2] * v.z,
-            R[3] * v.x + R[4] * v.y + R[5] * v.z,
-            R[6] * v.x + R[7] * v.y + R[8] * v.z};
+  // The point of a member's plane at a pixel beside the plane's, in the frame
+  // of the reference camera.
+  Vec3 PointOn(const Member& member, const DepthNormal& plane, int row, int col,
+               int down, int right) const {
+    const float depth =
+        PropagateDepth(plane, member.camera.Ray(row, col),
+                       member.camera.Ray(row + down, col + right));
+    const Vec3 p = TransferPoint(views_.B, views_.g, member.m, col + right,
+                                 row + down, depth);
+    return p.z * reference_.Ray(p.y / p.z, p.x / p.z);
   }
 
   // The pixel of a member that sees the point at a depth of a pixel, and the
@@ -211,21 +201,39 @@ struct Verdict {
   Map<int16_t> member;
 };
 
-void Execute(const Verdict& verdict, const Jury& jury, Map<float>* depth,
-             Map<Vec3>* normal) {
-  for (int row = 0; row < depth->height(); ++row) {
-    for (int col = 0; col < depth->width(); ++col) {
-      if (verdict.lead.At(row, col) == Verdict::kUnasked) {
-        continue;
+void ExecuteRow(const Verdict& verdict, const Jury& jury, int row,
+                Map<float>* depth, Map<Vec3>* normal) {
+  for (int col = 0; col < depth->width(); ++col) {
+    if (verdict.lead.At(row, col) == Verdict::kUnasked) {
+      continue;
+    }
+    const float taken = verdict.depth.At(row, col);
+    const DepthNormal plane =
+        taken > 0 ? jury.PlaneOf(verdict.member.At(row, col), row, col, taken)
+                  : DepthNormal();
+    depth->At(row, col) = plane.depth;
+    normal->At(row, col) = plane.normal;
+  }
+}
+
+// What a surface has at a pixel or, where points of a view that is further away
+// lie too far apart, beside it: whether it is seen there votes tell.
+float NearestAround(const Map<float>& surface, int row, int col) {
+  float nearest = surface.At(row, col);
+  if (nearest > 0) {
+    return nearest;
+  }
+  for (int r = std::max(row - 1, 0);
+       r <= std::min(row + 1, surface.height() - 1); ++r) {
+    for (int c = std::max(col - 1, 0);
+         c <= std::min(col + 1, surface.width() - 1); ++c) {
+      const float z = surface.At(r, c);
+      if (z > 0 && !(nearest > 0 && nearest <= z)) {
+        nearest = z;
       }
-      const float taken = verdict.depth.At(row, col);
-      const DepthNormal plane =
-          taken > 0 ? jury.PlaneOf(verdict.member.At(row, col), row, col, taken)
-                    : DepthNormal();
-      depth->At(row, col) = plane.depth;
-      normal->At(row, col) = plane.normal;
     }
   }
+  return nearest;
 }
 
 int NumAtATime(const Options& options, int num_members) {
@@ -246,7 +254,7 @@ bool ReachConsensus(const Options& options, const Problem& problem,
   const int at_a_time = NumAtATime(options, jury.size());
   const int num_rounds = (jury.size() + at_a_time - 1) / at_a_time;
   Steps steps(EffectiveNumThreads(options.num_threads),
-              height + jury.size() + num_rounds * height, control);
+              2 * height + jury.size() + num_rounds * height, control);
 
   Verdict verdict{Map<int16_t>(width, height, Verdict::kUnasked),
                   Map<float>(width, height), Map<int16_t>(width, height)};
@@ -272,7 +280,7 @@ bool ReachConsensus(const Options& options, const Problem& problem,
       for (int col = 0; col < width; ++col) {
         int16_t& best = verdict.lead.At(row, col);
         for (size_t i = 0; i < surfaces.size(); ++i) {
-          const float z = surfaces[i].At(row, col);
+          const float z = NearestAround(surfaces[i], row, col);
           if (best == Verdict::kUnasked || !IsDepth(z)) {
             continue;
           }
@@ -290,16 +298,22 @@ bool ReachConsensus(const Options& options, const Problem& problem,
       return false;
     }
   }
-  Execute(verdict, jury, depth, normal);
-  return true;
+  return steps.For(height, [&](int row, const ContinueCheck&) {
+    ExecuteRow(verdict, jury, row, depth, normal);
+  });
 }
 
 size_t ConsensusMemory(const Options& options, const Problem& problem,
                        int width, int height) {
-  const size_t num_surfaces =
+  const int num_surfaces =
       NumAtATime(options, static_cast<int>(problem.sources.size()));
-  return sizeof(float) * width * height * num_surfaces +
-         (2 * sizeof(int16_t) + sizeof(float)) * width * height;
+  size_t bytes = (sizeof(float) + sizeof(Vec3) + 2 * sizeof(int16_t) +
+                  sizeof(float) * (1 + num_surfaces)) *
+                 width * height;
+  for (const View& view : problem.sources) {
+    bytes += view.depth == nullptr ? 0 : view.depth->size() * sizeof(float);
+  }
+  return bytes;
 }
 
 }  // namespace tapa

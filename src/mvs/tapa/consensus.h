@@ -24,11 +24,11 @@ namespace tapa {
 //     each be wrong by e.
 //
 // An estimate with more votes against it than for it gives way to what some
-// source view sees on the pixel's ray, of several to that with the largest
-// lead, if that is at least three votes. Without such it goes. A pixel without
-// an estimate is filled under the same condition. Masked pixels get nothing.
-// New estimates lie on the plane through the source view's pixels around what
-// it sees.
+// source view sees first on the pixel's ray, of several to that with the
+// largest lead, if that is at least three votes, the view's own among them.
+// Without such it goes. A pixel without an estimate is filled under the same
+// condition. Masked pixels get nothing. New estimates lie on the plane through
+// the source view's pixels around what it sees.
 //
 // Only cameras and depth maps of the views are looked at; a source view without
 // a depth map has no votes. The result does not depend on the number of
@@ -38,8 +38,9 @@ bool ReachConsensus(const Options& options, const Problem& problem,
                     const Control& control, Map<float>* depth,
                     Map<Vec3>* normal);
 
-// Bytes of memory that it needs besides the views' maps: for w x h pixels and t
-// threads, or source views if these are fewer, w h (8 + 4 t).
+// Bytes of memory that it needs with the views' maps: for w x h pixels, n
+// source views of that size and t threads, or n if these are more, w h (24 + 4
+// t + 4 n).
 size_t ConsensusMemory(const Options& options, const Problem& problem,
                        int width, int height);
 
