@@ -1,8 +1,8 @@
 // Speed of TAPA's stages at one megapixel next to naive references, in one run.
 // Superpixels, means over similar pixels, the drawing of planes, sightings,
-// silhouettes and regions have none: the first two are OpenCV's, as is most of
-// the last, the third is one table look-up for every pixel, and the others ask
-// all that a reference would.
+// silhouettes, regions and the consensus have none: the first two are OpenCV's,
+// as is most of the last, the third is one table look-up for every pixel, and
+// the others ask all that a reference would.
 
 #include <benchmark/benchmark.h>
 
@@ -12,6 +12,7 @@
 
 #include "src/mvs/camera_table.h"
 #include "src/mvs/sweep/random.h"
+#include "src/mvs/tapa/consensus.h"
 #include "src/mvs/tapa/fill.h"
 #include "src/mvs/tapa/region_planes.h"
 #include "src/mvs/tapa/sightings.h"
@@ -331,6 +332,19 @@ void BM_Regions(benchmark::State& state) {
           });
 }
 BENCHMARK(BM_Regions)->Unit(benchmark::kMillisecond);
+
+// Two fifths of the pixels are outvoted or have nothing, and ten source views
+// say what they become.
+void BM_Consensus(benchmark::State& state) {
+  const SyntheticPlane scene(WithTenSources());
+  const Problem problem = scene.GeometricProblem();
+  Options options;
+  options.num_threads = 1;
+  RunStep(state, [&](Map<float>* depth, Map<Vec3>* normal, Map<uint8_t>*) {
+    ReachConsensus(options, problem, Control(), depth, normal);
+  });
+}
+BENCHMARK(BM_Consensus)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace tapa

@@ -113,7 +113,7 @@ def cost_table(by_method, methods):
         "**What was estimated, and what it took.** Coverage: share of all pixels with an "
         "estimate, and of those that were measured or have low texture. The median error is "
         "that of the estimates only: a method that dares more difficult pixels has a larger "
-        "one. CPU seconds are per megapixel and view, for both passes of stereo.",
+        "one. CPU seconds are per megapixel and view, for all passes of stereo.",
         ["method", *headings],
         [[label(method), *row[3]] for method, row in zip(methods, rows)],
         ["method", *names], [[method, *row[2]] for method, row in zip(methods, rows)])
@@ -140,7 +140,7 @@ def trade_table(by_method, methods, tolerances):
     rows = [_trade_values(by_method, method, tolerances) for method in methods]
     columns = [tolerance_text(*pair) for pair in tolerances]
     return Table(
-        "**Cost and score.** CPU seconds per megapixel and view for both passes, and their "
+        "**Cost and score.** CPU seconds per megapixel and view for all passes, and their "
         "share of COLMAP's; F1 of the depth maps in per cent, its mean over the tolerances, "
         "and that mean over the pixels of low texture.",
         ["method", "CPU s / MP", "of COLMAP's", *columns, "mean", "low texture"],

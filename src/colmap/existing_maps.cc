@@ -87,7 +87,7 @@ bool IsDone(const StereoPlan& plan, const PassPlan& pass, int view) {
   const bool has_depth = has(MapKind::kDepth);
   const bool has_normal = has(MapKind::kNormal);
   const bool has_graph = !pass.writes_graphs || has(MapKind::kConsistencyGraph);
-  // A draft has no other use for who asks for pictures.
+  // Pictures show how a draft came about; without them it has to do so again.
   const bool lacks_pictures =
       pass.writes_pictures && pass.pass == Pass::kDraft &&
       !HasTapaPictures(

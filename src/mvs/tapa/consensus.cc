@@ -1,157 +1,45 @@
 #include "src/mvs/tapa/consensus.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <vector>
 
 #include "src/base/depth.h"
 #include "src/base/parallel.h"
-#include "src/mvs/camera_table.h"
-#include "src/mvs/depth_planes.h"
-#include "src/mvs/sweep/geometric_cost.h"
-#include "src/mvs/tapa/nearest_pixel.h"
+#include "src/mvs/tapa/jury.h"
 
 namespace tapa {
 namespace {
 
 // Votes that a source view's surface needs to take a pixel: as many as a
-// triangle (triangle_completion.h). Other than there, one against counts once:
-// here it takes an estimate away, and not only in favour of a triangle.
+// triangle (triangle_completion.h).
 constexpr int kMinLead = 3;
 
-// The source views that have a depth map.
-class Jury {
- public:
-  Jury(const Options& options, const Problem& problem)
-      : table_(problem),
-        views_(table_.sources()),
-        reference_(table_.reference()),
-        tolerance_(static_cast<float>(options.tapa.relative_plane_distance)) {
-    for (int m = 0; m < views_.count; ++m) {
-      const View& view = problem.sources[m];
-      if (view.depth != nullptr) {
-        members_.push_back({m, view.depth, MakeRefCamera(view.camera)});
+// Source views whose surfaces are in memory at a time.
+int NumAtATime(const Options& options, int num_members) {
+  return std::min(EffectiveNumThreads(options.num_threads), num_members);
+}
+
+// What a surface has at a pixel or, where points of a view that is further away
+// lie too far apart, beside it: whether it is seen there votes tell.
+float NearestAround(const Map<float>& surface, int row, int col) {
+  float nearest = surface.At(row, col);
+  if (nearest > 0) {
+    return nearest;
+  }
+  for (int r = std::max(row - 1, 0);
+       r <= std::min(row + 1, surface.height() - 1); ++r) {
+    for (int c = std::max(col - 1, 0);
+         c <= std::min(col + 1, surface.width() - 1); ++c) {
+      const float z = surface.At(r, c);
+      if (z > 0 && !(nearest > 0 && nearest <= z)) {
+        nearest = z;
       }
     }
   }
-
-  int size() const { return static_cast<int>(members_.size()); }
-
-  // Votes for a surface less those against it.
-  int Lead(int row, int col, float depth) const {
-    int lead = 0;
-    for (const Member& member : members_) {
-      lead += Vote(member, row, col, depth);
-    }
-    return lead;
-  }
-
-  // The nearest surface of a member on the ray of every pixel of the reference
-  // view, 0 where it has none: the map's size is the view's.
-  void Project(int member, const ContinueCheck& should_continue,
-               Map<float>* surface) const {
-    const Map<float>& depth = *members_[member].depth;
-    for (int row = 0; row < depth.height() && should_continue(); ++row) {
-      for (int col = 0; col < depth.width(); ++col) {
-        const float z = depth.At(row, col);
-        if (!IsDepth(z)) {
-          continue;
-        }
-        const Vec3 p =
-            TransferPoint(views_.B, views_.g, members_[member].m, col, row, z);
-        int ref_row, ref_col;
-        if (p.z > 0 &&
-            FindNearestPixel({p.x / p.z, p.y / p.z}, surface->width(),
-                             surface->height(), &ref_row, &ref_col)) {
-          float& at = surface->At(ref_row, ref_col);
-          at = at > 0 ? std::min(at, p.z) : p.z;
-        }
-      }
-    }
-  }
-
-  // The plane of the surface that a member has at a depth of a pixel, on the
-  // pixel's ray: the point that it has there is up to half a pixel beside it.
-  DepthNormal PlaneOf(int member, int row, int col, float depth) const {
-    const Member& from = members_[member];
-    const Vec3 ray = reference_.Ray(row, col);
-    const DepthNormal frontal = {depth, (-1 / std::sqrt(Dot(ray, ray))) * ray};
-    float z;
-    int own_row, own_col;
-    if (!FindPixel(from, row, col, depth, &z, &own_row, &own_col)) {
-      return frontal;
-    }
-    const DepthNormal own =
-        DepthPlanes(*from.depth, from.camera, from.depth->width(),
-                    from.depth->height())
-            .At(own_row, own_col);
-    // Three points of it, in the order of the camera's axes.
-    constexpr int kStep = 8;
-    const Vec3 a = PointOn(from, own, own_row, own_col, 0, 0);
-    const Vec3 b = PointOn(from, own, own_row, own_col, 0, kStep);
-    const Vec3 c = PointOn(from, own, own_row, own_col, kStep, 0);
-    const Vec3 across = Cross(c - a, b - a);
-    const Vec3 normal = (1 / std::sqrt(Dot(across, across))) * across;
-    const float on_ray = Dot(normal, a) / Dot(normal, ray);
-    const bool is_seen =
-        Dot(normal, ray) < 0 && std::abs(on_ray - depth) <= tolerance_ * depth;
-    return is_seen ? DepthNormal{on_ray, normal} : frontal;
-  }
-
- private:
-  struct Member {
-    // Its number among the source views.
-    int m;
-    const Map<float>* depth;
-    RefCamera camera;
-  };
-
-  // The point of a member's plane at a pixel beside the plane's, in the frame
-  // of the reference camera.
-  Vec3 PointOn(const Member& member, const DepthNormal& plane, int row, int col,
-               int down, int right) const {
-    const float depth =
-        PropagateDepth(plane, member.camera.Ray(row, col),
-                       member.camera.Ray(row + down, col + right));
-    const Vec3 p = TransferPoint(views_.B, views_.g, member.m, col + right,
-                                 row + down, depth);
-    return p.z * reference_.Ray(p.y / p.z, p.x / p.z);
-  }
-
-  // The pixel of a member that sees the point at a depth of a pixel, and the
-  // point's depth there; false: it has no estimate of such a pixel.
-  bool FindPixel(const Member& member, int row, int col, float depth, float* z,
-                 int* own_row, int* own_col) const {
-    const Vec3 p = TransferPoint(views_.A, views_.b, member.m, col, row, depth);
-    *z = p.z;
-    return p.z > 0 &&
-           FindNearestPixel({p.x / p.z, p.y / p.z}, member.depth->width(),
-                            member.depth->height(), own_row, own_col) &&
-           IsDepth(member.depth->At(*own_row, *own_col));
-  }
-
-  int Vote(const Member& member, int row, int col, float depth) const {
-    float z;
-    int own_row, own_col;
-    if (!FindPixel(member, row, col, depth, &z, &own_row, &own_col)) {
-      return 0;
-    }
-    const float error = member.depth->At(own_row, own_col) / z - 1;
-    if (std::abs(error) <= tolerance_) {
-      return 1;
-    }
-    return error > 2 * tolerance_ ? -1 : 0;
-  }
-
-  const CameraTable table_;
-  const SourceCameras views_;
-  const RefCamera reference_;
-  const float tolerance_;
-  std::vector<Member> members_;
-};
+  return nearest;
+}
 
 // Runs steps over rows or members with several threads, and tells how far all
 // of them together are.
@@ -189,56 +77,70 @@ class Steps {
   int done_ = 0;
 };
 
-// What pixels that are outvoted, or have no estimate, become.
-struct Verdict {
-  static constexpr int16_t kUnasked = INT16_MAX;
+// The pixels of a view that are outvoted, or have no estimate, and what they
+// become.
+class Verdict {
+ public:
+  Verdict(const Problem& problem, const Jury& jury, int width, int height)
+      : problem_(problem),
+        jury_(jury),
+        lead_(width, height, kUnasked),
+        depth_(width, height),
+        member_(width, height) {}
 
-  // Lead of the best surface so far; kUnasked: the pixel keeps its estimate.
-  Map<int16_t> lead;
-  // The depth of that surface, if it has at least kMinLead votes, and the
-  // member that has it; 0: none yet.
-  Map<float> depth;
-  Map<int16_t> member;
-};
-
-void ExecuteRow(const Verdict& verdict, const Jury& jury, int row,
-                Map<float>* depth, Map<Vec3>* normal) {
-  for (int col = 0; col < depth->width(); ++col) {
-    if (verdict.lead.At(row, col) == Verdict::kUnasked) {
-      continue;
-    }
-    const float taken = verdict.depth.At(row, col);
-    const DepthNormal plane =
-        taken > 0 ? jury.PlaneOf(verdict.member.At(row, col), row, col, taken)
-                  : DepthNormal();
-    depth->At(row, col) = plane.depth;
-    normal->At(row, col) = plane.normal;
-  }
-}
-
-// What a surface has at a pixel or, where points of a view that is further away
-// lie too far apart, beside it: whether it is seen there votes tell.
-float NearestAround(const Map<float>& surface, int row, int col) {
-  float nearest = surface.At(row, col);
-  if (nearest > 0) {
-    return nearest;
-  }
-  for (int r = std::max(row - 1, 0);
-       r <= std::min(row + 1, surface.height() - 1); ++r) {
-    for (int c = std::max(col - 1, 0);
-         c <= std::min(col + 1, surface.width() - 1); ++c) {
-      const float z = surface.At(r, c);
-      if (z > 0 && !(nearest > 0 && nearest <= z)) {
-        nearest = z;
+  void FindOutvoted(int row, const Map<float>& depth) {
+    for (int col = 0; col < depth.width(); ++col) {
+      const float own = depth.At(row, col);
+      const bool is_masked =
+          problem_.IsMasked(static_cast<size_t>(row) * depth.width() + col);
+      if (!is_masked && !(IsDepth(own) && jury_.Lead(row, col, own) >= 0)) {
+        lead_.At(row, col) = kMinLead - 1;
       }
     }
   }
-  return nearest;
-}
 
-int NumAtATime(const Options& options, int num_members) {
-  return std::min(EffectiveNumThreads(options.num_threads), num_members);
-}
+  // surfaces: of the members from `first` on.
+  void ChooseBest(int row, int first, const std::vector<Map<float>>& surfaces) {
+    for (int col = 0; col < lead_.width(); ++col) {
+      int16_t& best = lead_.At(row, col);
+      for (size_t i = 0; i < surfaces.size() && best != kUnasked; ++i) {
+        const float z = NearestAround(surfaces[i], row, col);
+        const int lead = IsDepth(z) ? jury_.Lead(row, col, z) : 0;
+        if (lead > best) {
+          best = static_cast<int16_t>(lead);
+          depth_.At(row, col) = z;
+          member_.At(row, col) = static_cast<int16_t>(first + i);
+        }
+      }
+    }
+  }
+
+  void Execute(int row, Map<float>* depth, Map<Vec3>* normal) const {
+    for (int col = 0; col < depth->width(); ++col) {
+      if (lead_.At(row, col) == kUnasked) {
+        continue;
+      }
+      const float taken = depth_.At(row, col);
+      const DepthNormal plane =
+          taken > 0 ? jury_.PlaneOf(member_.At(row, col), row, col, taken)
+                    : DepthNormal();
+      depth->At(row, col) = plane.depth;
+      normal->At(row, col) = plane.normal;
+    }
+  }
+
+ private:
+  static constexpr int16_t kUnasked = INT16_MAX;
+
+  const Problem& problem_;
+  const Jury& jury_;
+  // Of the best surface so far; kUnasked: the pixel keeps its estimate.
+  Map<int16_t> lead_;
+  // The depth of that surface, if it has at least kMinLead votes, and the
+  // member that has it; 0: none yet.
+  Map<float> depth_;
+  Map<int16_t> member_;
+};
 
 }  // namespace
 
@@ -256,18 +158,10 @@ bool ReachConsensus(const Options& options, const Problem& problem,
   Steps steps(EffectiveNumThreads(options.num_threads),
               2 * height + jury.size() + num_rounds * height, control);
 
-  Verdict verdict{Map<int16_t>(width, height, Verdict::kUnasked),
-                  Map<float>(width, height), Map<int16_t>(width, height)};
-  const auto ask = [&](int row, const ContinueCheck&) {
-    for (int col = 0; col < width; ++col) {
-      const float own = depth->At(row, col);
-      if (!problem.IsMasked(static_cast<size_t>(row) * width + col) &&
-          !(IsDepth(own) && jury.Lead(row, col, own) >= 0)) {
-        verdict.lead.At(row, col) = kMinLead - 1;
-      }
-    }
-  };
-  if (!steps.For(height, ask)) {
+  Verdict verdict(problem, jury, width, height);
+  if (!steps.For(height, [&](int row, const ContinueCheck&) {
+        verdict.FindOutvoted(row, *depth);
+      })) {
     return false;
   }
   for (int first = 0; first < jury.size(); first += at_a_time) {
@@ -277,21 +171,7 @@ bool ReachConsensus(const Options& options, const Problem& problem,
       jury.Project(first + i, should_continue, &surfaces[i]);
     };
     const auto choose = [&](int row, const ContinueCheck&) {
-      for (int col = 0; col < width; ++col) {
-        int16_t& best = verdict.lead.At(row, col);
-        for (size_t i = 0; i < surfaces.size(); ++i) {
-          const float z = NearestAround(surfaces[i], row, col);
-          if (best == Verdict::kUnasked || !IsDepth(z)) {
-            continue;
-          }
-          const int lead = jury.Lead(row, col, z);
-          if (lead > best) {
-            best = static_cast<int16_t>(lead);
-            verdict.depth.At(row, col) = z;
-            verdict.member.At(row, col) = static_cast<int16_t>(first + i);
-          }
-        }
-      }
+      verdict.ChooseBest(row, first, surfaces);
     };
     if (!steps.For(static_cast<int>(surfaces.size()), project) ||
         !steps.For(height, choose)) {
@@ -299,7 +179,7 @@ bool ReachConsensus(const Options& options, const Problem& problem,
     }
   }
   return steps.For(height, [&](int row, const ContinueCheck&) {
-    ExecuteRow(verdict, jury, row, depth, normal);
+    verdict.Execute(row, depth, normal);
   });
 }
 

@@ -15,13 +15,8 @@
 namespace tapa {
 
 // Lets the source views judge depth (0: none) and normal of the reference view,
-// when all of them are complete. A surface at a depth of a pixel has one vote
-//
-//   - for it of every source view that sees it there itself, to
-//     relative_plane_distance (e),
-//   - against it of every source view that sees through it: whose own surface
-//     is further away by more than 2 e, as two estimates of one surface may
-//     each be wrong by e.
+// when all of them are complete. They vote for what they see, too, and against
+// what they see through (jury.h).
 //
 // An estimate with more votes against it than for it gives way to what some
 // source view sees first on the pixel's ray, of several to that with the
