@@ -93,7 +93,7 @@ class Verdict {
       const float own = depth.At(row, col);
       const bool is_masked =
           problem_.IsMasked(static_cast<size_t>(row) * depth.width() + col);
-      if (!is_masked && !(IsDepth(own) && jury_.Lead(row, col, own) >= 0)) {
+      if (!is_masked && !(IsDepth(own) && jury_.Lead(row, col, own, 0) >= 0)) {
         lead_.At(row, col) = kMinLead - 1;
       }
     }
@@ -105,7 +105,7 @@ class Verdict {
       int16_t& best = lead_.At(row, col);
       for (size_t i = 0; i < surfaces.size() && best != kUnasked; ++i) {
         const float z = NearestAround(surfaces[i], row, col);
-        const int lead = IsDepth(z) ? jury_.Lead(row, col, z) : 0;
+        const int lead = IsDepth(z) ? jury_.Lead(row, col, z, best + 1) : 0;
         if (lead > best) {
           best = static_cast<int16_t>(lead);
           depth_.At(row, col) = z;

@@ -23,10 +23,15 @@ Jury::Jury(const Options& options, const Problem& problem)
   }
 }
 
-int Jury::Lead(int row, int col, float depth) const {
+int Jury::Lead(int row, int col, float depth, int least) const {
   int lead = 0;
+  int num_left = size();
   for (const Member& member : members_) {
+    if (lead + num_left < least) {
+      return least - 1;
+    }
     lead += Vote(member, row, col, depth);
+    --num_left;
   }
   return lead;
 }

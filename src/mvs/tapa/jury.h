@@ -1,6 +1,7 @@
 #ifndef TAPA_SRC_MVS_TAPA_JURY_H_
 #define TAPA_SRC_MVS_TAPA_JURY_H_
 
+#include <limits>
 #include <vector>
 
 #include "src/base/map.h"
@@ -30,8 +31,10 @@ class Jury {
   // e, and one against what it sees through: where its own surface is further
   // away by more than 2 e, as two estimates of one surface may each be wrong by
   // e. Against counts twice where the question is which of two surfaces it is
-  // (view_votes.h); here it takes an estimate away.
-  int Lead(int row, int col, float depth) const;
+  // (view_votes.h); here it takes an estimate away. What cannot have a lead of
+  // `least` any more is not asked to the end: it has less.
+  int Lead(int row, int col, float depth,
+           int least = std::numeric_limits<int>::min()) const;
 
   // The depth of a member's nearest surface at every pixel that it has a point
   // in; `surface`, of the reference view's size, is 0 elsewhere.
