@@ -61,6 +61,10 @@ bool HasDrafts(const PatchMatchOptions& options) {
          options.tapa.completion_consensus;
 }
 
+bool Filters(const PatchMatchOptions& options, Pass pass, int level) {
+  return level == 0 && (pass == FinalPass(options) || pass == Pass::kDraft);
+}
+
 namespace {
 
 void TakeColmapDefaults(PatchMatchOptions* options) {
@@ -95,8 +99,6 @@ PatchMatchOptions PassOptions(PatchMatchOptions options, Pass pass, int level,
   options.num_levels = num_levels;
   const bool is_coarsest = level + 1 == num_levels;
   const bool is_geometric = pass != Pass::kPhotometric;
-  const bool is_final =
-      level == 0 && (pass == FinalPass(options) || pass == Pass::kDraft);
   if (is_geometric) {
     options.num_iterations =
         std::min(options.num_iterations, options.num_geom_iterations);
@@ -111,7 +113,7 @@ PatchMatchOptions PassOptions(PatchMatchOptions options, Pass pass, int level,
     options.first_perturbation =
         std::min(options.first_perturbation, options.geom_perturbation);
   }
-  if (!is_final) {
+  if (!Filters(options, pass, level)) {
     options.filter = false;
     options.tapa.refinement = false;
   }

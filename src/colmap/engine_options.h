@@ -16,6 +16,12 @@ Pass FinalPass(const colmap::mvs::PatchMatchOptions& options);
 // Whether its maps are made from drafts.
 bool HasDrafts(const colmap::mvs::PatchMatchOptions& options);
 
+// Whether a pass at a level filters or, which takes the filter's place,
+// refines: the final one does, or the drafts that it takes. Before that all
+// pixels keep their estimates.
+bool Filters(const colmap::mvs::PatchMatchOptions& options, Pass pass,
+             int level);
+
 // Throws Failure that names the option if one is out of range.
 void CheckOptions(const colmap::mvs::PatchMatchOptions& options);
 
@@ -27,9 +33,7 @@ Options EngineOptions(const colmap::mvs::PatchMatchOptions& options);
 int NumLevels(const colmap::mvs::PatchMatchOptions& options, int longest_side);
 
 // What is in force in a pass at a level: it has its own number of iterations
-// and size of random changes. Before the final pass, or the drafts that it
-// takes, all pixels keep their estimates, so that it neither filters nor, which
-// takes the filter's place, refines.
+// and size of random changes, and filters and refines only where Filters says.
 colmap::mvs::PatchMatchOptions PassOptions(
     colmap::mvs::PatchMatchOptions options, Pass pass, int level = 0,
     int num_levels = 1);

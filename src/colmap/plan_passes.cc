@@ -81,12 +81,10 @@ std::vector<PassPlan> PlanPasses(const PatchMatchOptions& options,
       to.has_maps = HasMaps(plan, pass, level);
       to.takes_drafts =
           level == 0 && pass == Pass::kGeometric && HasDrafts(options);
-      // No pass before the final one, or its drafts, filters.
-      const bool is_final =
-          level == 0 && (pass == FinalPass(options) || pass == Pass::kDraft);
-      to.writes_graphs = is_final && options.write_consistency_graph;
+      const bool filters = Filters(options, pass, level);
+      to.writes_graphs = filters && options.write_consistency_graph;
       to.writes_pictures =
-          is_final && options.tapa.enabled && !options.tapa_debug.empty();
+          filters && options.tapa.enabled && !options.tapa_debug.empty();
       passes.push_back(to);
     }
   }

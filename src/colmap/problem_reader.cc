@@ -165,7 +165,7 @@ std::unique_ptr<ProblemInput> ProblemReader::ReadDrafts(
   const SceneView& reference = plan_.View(problem.reference, 0);
   Problem& to = input->problem;
   to.reference.camera = reference.camera;
-  to.depth = ReadDepth(problem.reference, 0, Pass::kDraft);
+  to.depth = *depth_maps_.Get(DraftKey(problem.reference));
   to.normal = ReadNormal(problem.reference, 0, Pass::kDraft);
   to.mask = ReadMask(pass.options.mask_path, reference);
   for (const int source : problem.sources) {

@@ -44,8 +44,9 @@ class ProblemReader {
                                      const std::function<bool()>& stopped);
 
   // What views need to judge each other's drafts (tapa/consensus.h): cameras,
-  // depth maps, the view's own maps and mask, but no photographs. Sources that
-  // are no results have no drafts. Returns nothing if stopped. Throws Failure.
+  // depth maps, the view's own maps (as Problem::depth and normal) and mask,
+  // but no photographs. Sources that are no results have no drafts. Returns
+  // nothing if stopped. Throws Failure.
   std::unique_ptr<ProblemInput> ReadDrafts(
       const ViewIndices& problem, const PassPlan& pass,
       const std::function<bool()>& stopped);

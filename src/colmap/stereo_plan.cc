@@ -58,7 +58,7 @@ std::map<int, FittedPrior> PriorsOf(const PatchMatchOptions& options,
 
 // Maps of full size are what the user gets. A coarser one, or a draft, is
 // needed for a view that starts from it, and for one that has that view as a
-// source in a geometric pass; in place of a draft its geometric map will do.
+// source in a geometric pass.
 void FindNeeded(StereoPlan* plan) {
   const size_t num_problems = plan->problems.size();
   std::vector<int> problem_of(plan->views[0].size(), -1);
@@ -83,7 +83,7 @@ void FindNeeded(StereoPlan* plan) {
         // Helpers have no drafts.
         const int other = problem_of[source];
         if (pass.pass != Pass::kPhotometric && other >= 0 &&
-            !(pass.takes_drafts && !plan->is_result[source])) {
+            !(pass.takes_drafts && plan->IsHelper(other))) {
           before[other] = true;
         }
       }

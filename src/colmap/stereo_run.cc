@@ -31,6 +31,7 @@ double Megapixels(const SceneView& view) {
 
 // What a view takes, in megapixels times iterations.
 double Work(const PassPlan& pass, const SceneView& view) {
+  // Next to an iteration on the CPU.
   constexpr double kJudging = 0.1;
   return Megapixels(view) *
          (pass.takes_drafts ? kJudging : pass.options.num_iterations);
@@ -160,6 +161,7 @@ void StereoRun::TidyUp() const {
 // A small image leaves most of a GPU idle: at coarse levels it gets more views
 // at a time, while the CPU has all of its threads at work on one.
 std::vector<int> StereoRun::WorkersOf(const PassPlan& pass) const {
+  // Views are judged on the CPU, each with all of its threads.
   if (pass.takes_drafts) {
     return {kCpu};
   }

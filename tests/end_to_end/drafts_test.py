@@ -2,7 +2,6 @@
 went."""
 
 import os
-import subprocess
 import unittest
 
 import tiny_workspace as tiny
@@ -26,29 +25,12 @@ class Drafts(tiny.TestCase):
         tiny.make_workspace(folder)
         return self.run_in(folder, **options)
 
-    def stop_at(self, text, **options):
-        """Runs until a view's line has the text, then kills."""
-        process = subprocess.Popen(
-            tiny.stereo_command(self.folder, **{"tapa": 1, **options}),
-            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-        found = False
-        for line in process.stdout:
-            if text in line and "megapixels in" in line:
-                found = True
-                break
-        process.kill()
-        process.communicate()
-        self.assertTrue(found, text)
+    def stop_at(self, view, **options):
+        self.assertTrue(tiny.stop_stereo_at(
+            self.folder, " %s view" % view, **{"tapa": 1, **options}), view)
 
     def draft_path(self, name, folder="depth_maps"):
         return self.path("stereo", "levels", "0", folder, name + ".draft.bin")
-
-    def write_config(self, *views):
-        """views: each view and its sources, by their numbers."""
-        with open(self.path("stereo", "patch-match.cfg"), "w") as file:
-            for view, sources in views:
-                file.write("%s\n%s\n" % (self.names[view], ", ".join(
-                    self.names[source] for source in sources)))
 
     def geometric(self, files):
         return {name: content for name, content in files.items()
@@ -174,7 +156,7 @@ class Drafts(tiny.TestCase):
                 self.assertGreater(depth[row * width + col], 0)
 
     def test_sources_that_are_not_listed_have_no_say(self):
-        self.write_config((0, [1, 2, 3]))
+        tiny.write_sources(self.folder, self.names, (0, [1, 2, 3]))
         with_consensus = self.geometric(self.run_in(self.folder))
         for name in with_consensus:
             os.remove(self.path("stereo", name))
@@ -187,10 +169,10 @@ class Drafts(tiny.TestCase):
         """Those that are complete stay, and make drafts again for what the new ones are asked by."""
         first = [(0, [1]), (1, [0])]
         both = [*first, (2, [1, 3]), (3, [2])]
-        self.write_config(*first)
+        tiny.write_sources(self.folder, self.names, *first)
         before = self.geometric(self.run_in(self.folder))
         self.assertEqual(len(before), 4)
-        self.write_config(*both)
+        tiny.write_sources(self.folder, self.names, *both)
         result = tiny.run_stereo(self.folder, tapa=1)
         self.assert_success(result)
         files = tiny.snapshot(self.folder)

@@ -88,16 +88,8 @@ class Levels(tiny.TestCase):
                     self.assertEqual(content, expected[name], name)
         self.assert_same_files(expected, self.run_in(self.folder))
 
-    def stop_at(self, text, **options):
-        """Runs until a line has the text, then kills."""
-        process = subprocess.Popen(
-            tiny.stereo_command(self.folder, **{"num_levels": 3, **options}),
-            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-        for line in process.stdout:
-            if text in line:
-                break
-        process.kill()
-        process.communicate()
+    def stop_at(self, text):
+        self.assertTrue(tiny.stop_stereo_at(self.folder, text, num_levels=3), text)
 
     def test_levels_of_another_run_are_dropped(self):
         self.stop_at("level 1 photometric 2/4")
@@ -126,11 +118,7 @@ class Levels(tiny.TestCase):
         self.assertNotIn("megapixels in", result.stdout)
 
     def write_config(self, folder, *views):
-        """views: each view and its sources, by their numbers."""
-        with open(os.path.join(folder, "stereo", "patch-match.cfg"), "w") as file:
-            for view, sources in views:
-                file.write("%s\n%s\n" % (self.names[view], ", ".join(
-                    self.names[source] for source in sources)))
+        tiny.write_sources(folder, self.names, *views)
 
     def test_views_added_later(self):
         first = [(0, [1]), (1, [0])]

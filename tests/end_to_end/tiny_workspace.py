@@ -292,6 +292,24 @@ def run_stereo(workspace, arguments=(), **options):
     return run(stereo_command(workspace, arguments, **options))
 
 
+def stop_stereo_at(workspace, text, **options):
+    """Runs stereo until a line that it prints has the text, then kills it. Returns whether one
+    had."""
+    process = subprocess.Popen(stereo_command(workspace, **options), stdout=subprocess.PIPE,
+                               stderr=subprocess.STDOUT, text=True)
+    found = any(text in line for line in process.stdout)
+    process.kill()
+    process.communicate()
+    return found
+
+
+def write_sources(workspace, names, *views):
+    """Lists views, each with its sources, by their numbers."""
+    with open(os.path.join(workspace, "stereo", "patch-match.cfg"), "w") as file:
+        for view, sources in views:
+            file.write("%s\n%s\n" % (names[view], ", ".join(names[i] for i in sources)))
+
+
 class TestCase(unittest.TestCase):
     """A test with a folder of its own, self.folder."""
 
